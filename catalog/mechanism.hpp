@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace polyglide {
+
+using Vector3 = Eigen::Vector3d;
+
+/// The joint kinds of the mechanism format. See docs/conventions.md.
+enum class JointType {
+  revolute,
+  prismatic,
+  helical,
+  cylindrical,
+  universal,
+  spherical,
+  planar,
+  weld
+};
+
+/// Number of freedoms of a joint kind: 1 1 1 2 2 3 3 0.
+[[nodiscard]] int freedoms(JointType type);
+
+/// Closed interval of a joint coordinate, measured from home [m or rad].
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+};
+
+/// A joint between two bodies. Points [m] and unit directions are in the base
+/// frame at home, the assembled posture in which the mechanism is described.
+struct Joint {
+  std::string name;
+  JointType type = JointType::revolute;
+  std::array<int, 2> bodies{};               ///< indices into Mechanism::bodies
+  Vector3 at = Vector3::Zero();              ///< a point on the axis, or the centre [m]
+  std::array<Vector3, 2> axes{Vector3::UnitZ(), Vector3::UnitX()};
+  ///< unit; [0] the axis or normal; [1] only for universal, fixed in bodies[1].
+  double pitch = 0;                          ///< helical: advance per radian [m/rad]
+  std::vector<int> driven;                   ///< driven freedom indices, ascending
+  std::vector<Range> range;                  ///< one per freedom; empty = unlimited
+  std::optional<double> cone;                ///< largest deflection of cone_axis [rad]
+  Vector3 cone_axis = Vector3::Zero();       ///< unit; set whenever cone is
+};
+
+/// Points of one body that must stay on the inner side of planes fixed in the
+/// base: normal · point <= offset. Carries, for example, Delta 1's triangle check.
+struct HalfSpaceLimit {
+  struct Plane {
+    Vector3 normal;     ///< unit, base frame
+    double offset = 0;  ///< [m]
+  };
+  std::string name;
+  int body = 0;
+  std::vector<Vector3> points;  ///< base frame at home [m], fixed in the body
+  std::vector<Plane> planes;
+};
+
+/// Units of a file, kept so that people read back what they wrote.
+struct Units {
+  std::string length = "mm";
+  std::string angle = "deg";
+  double metres = 1e-3;                 ///< one file length unit in metres
+  double radians = 0.017453292519943295;  ///< one file angle unit in radians
+};
+
+/// A closed-loop mechanism: bodies joined by joints, in numbers. Pure value,
+/// SI units. Body 0.. are named; `base` is fixed, `platform` carries the tool.
+struct Mechanism {
+  std::string name, title, source, about;
+  Units units;  ///< of the file it came from; the numbers here are SI
+  std::vector<std::string> bodies;
+  int base = 0;
+  int platform = 0;
+  Vector3 tool = Vector3::Zero();  ///< tool point at home, base frame [m]
+  std::vector<Joint> joints;
+  std::vector<HalfSpaceLimit> limits;
+};
+
+}  // namespace polyglide

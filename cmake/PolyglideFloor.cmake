@@ -1,0 +1,39 @@
+# The house, from the ground up. A floor may use only floors named before it.
+set(POLYGLIDE_FLOORS catalog kinematics synthesis optimizer report)
+set_property(GLOBAL PROPERTY GLOBAL_DEPENDS_NO_CYCLES ON)
+
+# polyglide_add_floor(<name> [USES floor...] [PUBLIC target...] [PRIVATE target...])
+#
+# Defines polyglide::<name> from every .cpp beside its headers. Headers are
+# included as "<name>/header.hpp". An upward link stops configuration here; an
+# upward include is refused by tests/house_test.cpp.
+function(polyglide_add_floor name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;PUBLIC;PRIVATE")
+  list(FIND POLYGLIDE_FLOORS ${name} floor)
+  if(floor EQUAL -1)
+    message(FATAL_ERROR "polyglide: '${name}' is not in POLYGLIDE_FLOORS (${POLYGLIDE_FLOORS})")
+  endif()
+  foreach(used IN LISTS arg_USES)
+    list(FIND POLYGLIDE_FLOORS ${used} used_floor)
+    if(used_floor EQUAL -1 OR used_floor GREATER_EQUAL floor)
+      message(FATAL_ERROR "polyglide: ${name} may not use ${used}; the order is ${POLYGLIDE_FLOORS}")
+    endif()
+  endforeach()
+
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
+  file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.hpp)
+  add_library(polyglide_${name} STATIC ${sources})
+  add_library(polyglide::${name} ALIAS polyglide_${name})
+  set_target_properties(polyglide_${name} PROPERTIES EXPORT_NAME ${name}
+                                                     POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(polyglide_${name} PUBLIC cxx_std_20)
+  target_include_directories(
+    polyglide_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/polyglide>)
+  list(TRANSFORM arg_USES PREPEND polyglide::)
+  target_link_libraries(polyglide_${name} PUBLIC ${arg_USES} ${arg_PUBLIC}
+                        PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:polyglide_options>)
+  install(TARGETS polyglide_${name} EXPORT polyglide COMPONENT dev)
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/polyglide/${name}
+          COMPONENT dev)
+endfunction()
