@@ -1,0 +1,94 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kinematics/legs.hpp"
+#include "kinematics/task.hpp"
+
+namespace polyglide {
+
+/// A machine ready for inverse and forward kinematics: the compiled model, its
+/// task space and, where its legs have closed forms, those.
+struct Machine {
+  Model model;
+  TaskSpace task;
+  std::optional<LegMachine> legs;
+};
+
+/// Compiles a mechanism and finds its task space (a short mobility analysis).
+[[nodiscard]] Machine prepare(const Mechanism& mechanism);
+
+/// A platform pose: displacement from home about the base frame.
+struct Pose {
+  Vector3 position = Vector3::Zero();  ///< of the tool point, displacement from home [m]
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+};
+
+/// Pose of six task coordinates [x y z | a b c], metres and radians;
+/// rotation = Rz(c)·Ry(b)·Rx(a) about the fixed base axes.
+[[nodiscard]] Pose pose_of(const Eigen::Matrix<double, 6, 1>& coordinates);
+
+/// The task coordinates of a pose; |b| <= pi/2.
+[[nodiscard]] Eigen::Matrix<double, 6, 1> coordinates_of(const Pose& pose);
+
+/// Displacement of the platform body: tool at tool_home + position.
+[[nodiscard]] Transform platform_transform(const Model& model, const Pose& pose);
+[[nodiscard]] Pose platform_pose(const Model& model, const Transform& platform);
+
+/// Result of inverse kinematics. Not reachable is a value, not an exception.
+struct InverseResult {
+  bool reachable = false;
+  std::string limit;               ///< why not: "stroke leg1.guide max", "rod leg2.rod cannot reach", …; "" when reachable
+  Eigen::VectorXd drives;          ///< from home, order of Model::drives [m, rad]
+  Pose pose;                       ///< the full pose taken, parasitic parts included
+  double residual = 0;             ///< closure error [m, rad], scaled
+};
+
+/// Drives for a pose. Only the machine's independent task coordinates are
+/// imposed; the others follow from the mechanism and come back in `pose`.
+/// Closed form for leg machines whose task space is pure, else Newton on loop
+/// closure, continued from home in steps so that the assembly mode is home's.
+/// Limits of the mechanism apply unless named in `ignored`.
+[[nodiscard]] InverseResult solve_inverse(const Machine& machine, const Pose& pose,
+                                          const std::vector<std::string>& ignored = {});
+
+/// The general way, whatever the machine: the reference for every fast path.
+/// @param posture in: start (home or a nearby posture); out: the solution.
+[[nodiscard]] InverseResult solve_inverse_general(const Machine& machine, const Pose& pose,
+                                                  Posture& posture);
+
+struct ForwardSolution {
+  Pose pose;
+  double residual = 0;     ///< largest closure error [m or rad, scaled by size]
+  bool closed_form = false;
+  bool home_mode = false;  ///< connected with home by continuation of the drives
+};
+
+/// Platform poses for drive positions from home. `all` asks for every assembly
+/// mode: closed form (two roots) for translational three-leg machines, else
+/// Newton from many seeded starts. Empty when it cannot be assembled. Sorted:
+/// home mode first, then by pose.
+[[nodiscard]] std::vector<ForwardSolution> solve_forward(const Machine& machine,
+                                                         const Eigen::VectorXd& drives, bool all,
+                                                         std::uint64_t seed = 1);
+
+/// Follows the drives from a posture; false when the machine cannot be assembled there.
+[[nodiscard]] bool solve_forward_from(const Machine& machine, const Eigen::VectorXd& drives,
+                                      Posture& posture);
+
+/// Task Jacobian at a posture: drive rates = J · task rates, m×n for m drives
+/// and n task axes; rotational columns divided by the characteristic length, so
+/// entries are dimensionless for linear drives. General: from the kernel of loop closure.
+/// nullopt at a posture where the platform rates do not fix the drives.
+[[nodiscard]] std::optional<Eigen::MatrixXd> task_jacobian(const Machine& machine,
+                                                           const Posture& posture);
+
+/// 2-norm condition number, infinity when singular, of any m×n Jacobian.
+[[nodiscard]] double condition_number(const Eigen::MatrixXd& jacobian);
+
+/// The drives and pose of a posture.
+[[nodiscard]] Eigen::VectorXd drive_positions(const Model& model, const Posture& posture);
+
+}  // namespace polyglide

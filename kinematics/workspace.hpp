@@ -1,0 +1,71 @@
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kinematics/evaluate.hpp"
+
+namespace polyglide {
+
+struct WorkspaceOptions {
+  std::vector<std::string> ignored;  ///< limits that do not count
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< orientation of the platform
+  double accuracy = 5e-4;            ///< relative uncertainty of the volume aimed at
+  int slices = 9;                    ///< horizontal slices kept for maps
+  std::optional<Vector3> box;        ///< also: does a box of this size fit, and where [m]
+  std::optional<std::pair<double, double>> cylinder;  ///< also: does diameter × height fit [m]
+};
+
+struct Cylinder {
+  double diameter = 0, height = 0;  ///< [m], axis vertical
+  Vector3 center = Vector3::Zero();
+};
+struct Box {
+  Vector3 size = Vector3::Zero();   ///< [m], edges along base x, y, z
+  Vector3 center = Vector3::Zero();
+};
+
+/// Horizontal slice with 1/κ (NaN = outside).
+struct Slice {
+  double z = 0;
+  std::vector<double> x, y, inverse_condition;  ///< values row by row, x fastest
+};
+
+/// Translation workspace at one orientation. Positions are tool displacements
+/// from home, base frame, metres.
+struct Workspace {
+  double volume = 0;
+  double volume_lower = 0, volume_upper = 0;  ///< cells wholly in / not wholly out by sampling
+  Vector3 lower = Vector3::Zero(), upper = Vector3::Zero();  ///< bounding box of reachable cells
+  std::vector<std::pair<double, double>> area_by_z;
+  Cylinder inscribed_cylinder;  ///< largest volume
+  Box inscribed_box;            ///< largest volume
+  std::vector<Cylinder> cylinders;  ///< largest height for a series of diameters
+  double global_conditioning = 0, worst = 0, best = 0;  ///< mean, least and greatest 1/κ
+  double characteristic_length = 0;
+  std::map<std::string, double> limits_hit;  ///< share of the boundary each limit makes
+  std::vector<Slice> slices;
+  struct RotationRange {
+    char axis = 'A';
+    Vector3 at = Vector3::Zero();
+    double min = 0, max = 0;  ///< [rad] about home orientation, without leaving the limits or crossing a singularity
+  };
+  std::optional<RotationRange> rotation_range;  ///< widest found, for 3T1R machines
+  std::optional<Box> asked_box;            ///< where the asked box fits
+  std::optional<Cylinder> asked_cylinder;  ///< where the asked cylinder fits
+  std::size_t poses = 0;
+  double seconds = 0;
+};
+
+/// Volume, slices, inscribed shapes, conditioning and the limits that bound the
+/// workspace. Same bits for any thread count.
+[[nodiscard]] Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& options = {});
+
+/// The `workspace --json` document.
+[[nodiscard]] nlohmann::ordered_json to_json(const Workspace& workspace);
+
+}  // namespace polyglide
