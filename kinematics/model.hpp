@@ -30,6 +30,7 @@ struct Model {
   std::vector<int> drives;          ///< freedom indices, in the order of the file
   std::vector<int> parent_joint;    ///< per body: tree joint towards the base, -1 for the base
   std::vector<int> body_order;      ///< bodies from the base outwards
+  Eigen::MatrixXi path;             ///< bodies × joints: +1/-1 when the joint lies on the body's tree path
   std::vector<int> loop_joints;     ///< joints not in the tree: one loop each
 };
 
@@ -52,6 +53,10 @@ struct Posture {
 /// are rotations about base x, y, z) and updates the bodies through the tree.
 void advance(const Model& model, Posture& posture, const Eigen::VectorXd& increments);
 
+/// Screw of every freedom at the posture: twist of bodies[1] against bodies[0]
+/// of its joint per unit rate, [w; v at the base origin], 6×F.
+[[nodiscard]] Eigen::MatrixXd freedom_screws(const Model& model, const Posture& posture);
+
 /// Twist of body `body` per unit rate of every freedom: 6×F, columns zero for
 /// freedoms not on its tree path. [w; v at the base origin], base frame.
 [[nodiscard]] Eigen::MatrixXd body_jacobian(const Model& model, const Posture& posture, int body);
@@ -59,6 +64,10 @@ void advance(const Model& model, Posture& posture, const Eigen::VectorXd& increm
 /// Loop-closure Jacobian, 6L×F, scaled: rows [w; v/size] taken at the centre,
 /// columns of translations per `size`. Kernel = instantaneous mobility.
 [[nodiscard]] Eigen::MatrixXd closure_jacobian(const Model& model, const Posture& posture);
+
+/// The same from freedom_screws() already at hand.
+[[nodiscard]] Eigen::MatrixXd closure_jacobian(const Model& model, const Eigen::MatrixXd& screws);
+[[nodiscard]] Eigen::MatrixXd body_jacobian(const Model& model, const Eigen::MatrixXd& screws, int body);
 
 /// Closure error of every loop, scaled as the Jacobian's rows: [rotation vector;
 /// displacement/size]. Zero when assembled.

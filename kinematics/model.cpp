@@ -1,0 +1,292 @@
+#include "kinematics/model.hpp"
+
+#include <fmt/format.h>
+
+#include <queue>
+#include <stdexcept>
+
+namespace polyglide {
+namespace {
+
+Screw rotation_screw(const Vector3& axis, const Vector3& point, double pitch = 0) {
+  Screw screw;
+  screw << axis, point.cross(axis) + pitch * axis;
+  return screw;
+}
+
+Screw translation_screw(const Vector3& direction) {
+  Screw screw;
+  screw << Vector3::Zero(), direction;
+  return screw;
+}
+
+/// A unit vector perpendicular to `axis`, the same for the same axis.
+Vector3 perpendicular(const Vector3& axis) {
+  int smallest = 0;
+  axis.cwiseAbs().minCoeff(&smallest);
+  return axis.cross(Vector3::Unit(smallest)).normalized();
+}
+
+std::vector<Screw> joint_screws(const Joint& joint) {
+  const Vector3& axis = joint.axes[0];
+  switch (joint.type) {
+    case JointType::revolute:
+      return {rotation_screw(axis, joint.at)};
+    case JointType::prismatic:
+      return {translation_screw(axis)};
+    case JointType::helical:
+      return {rotation_screw(axis, joint.at, joint.pitch)};
+    case JointType::cylindrical:
+      return {rotation_screw(axis, joint.at), translation_screw(axis)};
+    case JointType::universal:
+      return {rotation_screw(axis, joint.at), rotation_screw(joint.axes[1], joint.at)};
+    case JointType::spherical:
+      return {rotation_screw(Vector3::UnitX(), joint.at), rotation_screw(Vector3::UnitY(), joint.at),
+              rotation_screw(Vector3::UnitZ(), joint.at)};
+    case JointType::planar: {
+      const Vector3 u = perpendicular(axis);
+      return {translation_screw(u), translation_screw(axis.cross(u)), rotation_screw(axis, joint.at)};
+    }
+    case JointType::weld:
+      return {};
+  }
+  return {};
+}
+
+/// exp(q·screw): rotation about, and advance along, the screw's axis.
+Transform exponential(const Screw& screw, double q) {
+  Transform motion = Transform::Identity();
+  const Vector3 w = screw.head<3>(), v = screw.tail<3>();
+  if (w.isZero()) {
+    motion.translation() = q * v;
+    return motion;
+  }
+  // |w| = 1: v = point × w + pitch w, so point = w × v is the axis point nearest to the origin.
+  const Vector3 point = w.cross(v);
+  motion.linear() = Eigen::AngleAxisd(q, w).toRotationMatrix();
+  motion.translation() = point - motion.linear() * point + q * w.dot(v) * w;
+  return motion;
+}
+
+Transform rotation_about(const Eigen::Quaterniond& rotation, const Vector3& centre) {
+  Transform motion = Transform::Identity();
+  motion.linear() = rotation.toRotationMatrix();
+  motion.translation() = centre - motion.linear() * centre;
+  return motion;
+}
+
+/// Displacement of bodies[1] against bodies[0], in home coordinates.
+Transform joint_motion(const Model& model, const Posture& posture, int joint) {
+  const Joint& data = model.mechanism.joints[joint];
+  if (data.type == JointType::spherical) return rotation_about(posture.balls[joint], data.at);
+  Transform motion = Transform::Identity();
+  const int first = model.first_freedom[joint];
+  for (int i = 0; i < freedoms(data.type); ++i)
+    motion = motion * exponential(model.freedoms[first + i].screw, posture.q[first + i]);
+  return motion;
+}
+
+Screw transformed(const Transform& motion, const Screw& screw) {
+  Screw result;
+  result.head<3>() = motion.linear() * screw.head<3>();
+  result.tail<3>() = motion.linear() * screw.tail<3>() + motion.translation().cross(result.head<3>());
+  return result;
+}
+
+void place_bodies(const Model& model, Posture& posture) {
+  for (int body : model.body_order) {
+    const int joint = model.parent_joint[body];
+    if (joint < 0) continue;
+    const auto [first, second] = model.mechanism.joints[joint].bodies;
+    const Transform motion = joint_motion(model, posture, joint);
+    posture.bodies[body] = body == second ? posture.bodies[first] * motion
+                                          : posture.bodies[second] * motion.inverse();
+  }
+}
+
+/// Breadth-first tree, so that paths are short; the other joints close loops.
+void build_tree(Model& model) {
+  const Mechanism& mechanism = model.mechanism;
+  const int bodies = static_cast<int>(mechanism.bodies.size());
+  const int joints = static_cast<int>(mechanism.joints.size());
+  model.parent_joint.assign(bodies, -1);
+  model.path = Eigen::MatrixXi::Zero(bodies, joints);
+  std::vector<bool> seen(bodies, false), in_tree(joints, false);
+  std::queue<int> queue;
+  queue.push(mechanism.base);
+  seen[mechanism.base] = true;
+  while (!queue.empty()) {
+    const int body = queue.front();
+    queue.pop();
+    model.body_order.push_back(body);
+    for (int j = 0; j < joints; ++j) {
+      const auto [first, second] = mechanism.joints[j].bodies;
+      if (first != body && second != body) continue;
+      const int other = first == body ? second : first;
+      if (seen[other]) continue;
+      seen[other] = in_tree[j] = true;
+      model.parent_joint[other] = j;
+      model.path.row(other) = model.path.row(body);
+      model.path(other, j) = other == second ? 1 : -1;
+      queue.push(other);
+    }
+  }
+  for (int b = 0; b < bodies; ++b)
+    if (!seen[b])
+      throw std::invalid_argument(
+          fmt::format("compile: body \"{}\" is not connected to the base", mechanism.bodies[b]));
+  for (int j = 0; j < joints; ++j)
+    if (!in_tree[j]) model.loop_joints.push_back(j);
+}
+
+/// The centre and spread of the joint points. A prismatic joint's point is only
+/// for drawing and must not influence a rank decision.
+void measure(Model& model) {
+  std::vector<Vector3> points;
+  for (const Joint& joint : model.mechanism.joints)
+    if (joint.type != JointType::prismatic && joint.type != JointType::weld) points.push_back(joint.at);
+  if (points.empty()) points.push_back(model.mechanism.tool);
+  model.centre.setZero();
+  for (const Vector3& point : points) model.centre += point;
+  model.centre /= static_cast<double>(points.size());
+  double square = 0;
+  for (const Vector3& point : points) square += (point - model.centre).squaredNorm();
+  model.size = std::sqrt(square / static_cast<double>(points.size()));
+  if (model.size > 1e-9 * (1 + model.centre.norm())) return;
+  // All joints in one point (spherical linkage): the tool gives the length.
+  model.size = (model.mechanism.tool - model.centre).norm();
+  if (!(model.size > 0)) model.size = 1;
+}
+
+}  // namespace
+
+Model compile(const Mechanism& mechanism) {
+  Model model;
+  model.mechanism = mechanism;
+  for (int j = 0; j < static_cast<int>(mechanism.joints.size()); ++j) {
+    model.first_freedom.push_back(static_cast<int>(model.freedoms.size()));
+    const std::vector<Screw> screws = joint_screws(mechanism.joints[j]);
+    for (int i = 0; i < static_cast<int>(screws.size()); ++i)
+      model.freedoms.push_back({j, i, screws[i], screws[i].head<3>().isZero()});
+    for (int driven : mechanism.joints[j].driven)
+      model.drives.push_back(model.first_freedom.back() + driven);
+  }
+  build_tree(model);
+  measure(model);
+  return model;
+}
+
+Posture home(const Model& model) {
+  Posture posture;
+  posture.q = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.freedoms.size()));
+  posture.balls.assign(model.mechanism.joints.size(), Eigen::Quaterniond::Identity());
+  posture.bodies.assign(model.mechanism.bodies.size(), Transform::Identity());
+  return posture;
+}
+
+void advance(const Model& model, Posture& posture, const Eigen::VectorXd& increments) {
+  for (std::size_t j = 0; j < model.mechanism.joints.size(); ++j) {
+    const Joint& joint = model.mechanism.joints[j];
+    const int first = model.first_freedom[j];
+    if (joint.type == JointType::spherical) {
+      const Vector3 turn =
+          posture.bodies[joint.bodies[0]].linear().transpose() * increments.segment<3>(first);
+      const double angle = turn.norm();
+      if (angle > 0)
+        posture.balls[j] =
+            (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * posture.balls[j]).normalized();
+    } else {
+      const int count = freedoms(joint.type);
+      posture.q.segment(first, count) += increments.segment(first, count);
+    }
+  }
+  place_bodies(model, posture);
+}
+
+Eigen::MatrixXd freedom_screws(const Model& model, const Posture& posture) {
+  Eigen::MatrixXd screws(6, model.freedoms.size());
+  for (std::size_t j = 0; j < model.mechanism.joints.size(); ++j) {
+    const Joint& joint = model.mechanism.joints[j];
+    const int first = model.first_freedom[j];
+    const Transform& carrier = posture.bodies[joint.bodies[0]];
+    if (joint.type == JointType::spherical) {
+      const Vector3 centre = carrier * joint.at;
+      for (int i = 0; i < 3; ++i) screws.col(first + i) = rotation_screw(Vector3::Unit(i), centre);
+      continue;
+    }
+    Transform motion = carrier;
+    const int count = freedoms(joint.type);
+    for (int i = 0; i < count; ++i) {
+      const Screw& screw = model.freedoms[first + i].screw;
+      screws.col(first + i) = transformed(motion, screw);
+      if (i + 1 < count) motion = motion * exponential(screw, posture.q[first + i]);
+    }
+  }
+  return screws;
+}
+
+Eigen::MatrixXd body_jacobian(const Model& model, const Eigen::MatrixXd& screws, int body) {
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(6, screws.cols());
+  for (std::size_t j = 0; j < model.mechanism.joints.size(); ++j) {
+    const int sign = model.path(body, static_cast<Eigen::Index>(j));
+    const int first = model.first_freedom[j], count = freedoms(model.mechanism.joints[j].type);
+    if (sign != 0) jacobian.middleCols(first, count) = sign * screws.middleCols(first, count);
+  }
+  return jacobian;
+}
+
+Eigen::MatrixXd body_jacobian(const Model& model, const Posture& posture, int body) {
+  return body_jacobian(model, freedom_screws(model, posture), body);
+}
+
+Eigen::VectorXd freedom_scale(const Model& model) {
+  Eigen::VectorXd scale(model.freedoms.size());
+  for (std::size_t f = 0; f < model.freedoms.size(); ++f)
+    scale[f] = model.freedoms[f].translational ? model.size : 1;
+  return scale;
+}
+
+Eigen::MatrixXd closure_jacobian(const Model& model, const Eigen::MatrixXd& screws) {
+  // Scaled screws: moments about the centre, lengths in units of the size.
+  Eigen::MatrixXd scaled = screws;
+  for (Eigen::Index f = 0; f < scaled.cols(); ++f) {
+    const Vector3 w = scaled.col(f).head<3>();
+    scaled.col(f).tail<3>() += w.cross(model.centre);
+    scaled.col(f).tail<3>() /= model.freedoms[f].translational ? 1 : model.size;
+  }
+  const Eigen::Index loops = static_cast<Eigen::Index>(model.loop_joints.size());
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(6 * loops, scaled.cols());
+  for (Eigen::Index loop = 0; loop < loops; ++loop) {
+    const int closing = model.loop_joints[loop];
+    const auto [first_body, second_body] = model.mechanism.joints[closing].bodies;
+    for (int j = 0; j < static_cast<int>(model.mechanism.joints.size()); ++j) {
+      // Around the loop: base → bodies[0], the closing joint, bodies[1] → base.
+      const int sign = j == closing ? 1 : model.path(first_body, j) - model.path(second_body, j);
+      const int first = model.first_freedom[j], count = freedoms(model.mechanism.joints[j].type);
+      if (sign != 0)
+        jacobian.block(6 * loop, first, 6, count) = sign * scaled.middleCols(first, count);
+    }
+  }
+  return jacobian;
+}
+
+Eigen::MatrixXd closure_jacobian(const Model& model, const Posture& posture) {
+  return closure_jacobian(model, freedom_screws(model, posture));
+}
+
+Eigen::VectorXd closure_residual(const Model& model, const Posture& posture) {
+  const Eigen::Index loops = static_cast<Eigen::Index>(model.loop_joints.size());
+  Eigen::VectorXd residual(6 * loops);
+  for (Eigen::Index loop = 0; loop < loops; ++loop) {
+    const int closing = model.loop_joints[loop];
+    const auto [first, second] = model.mechanism.joints[closing].bodies;
+    const Transform gap = posture.bodies[first] * joint_motion(model, posture, closing) *
+                          posture.bodies[second].inverse();
+    const Eigen::AngleAxisd turn(gap.linear());
+    residual.segment<3>(6 * loop) = turn.angle() * turn.axis();
+    residual.segment<3>(6 * loop + 3) = (gap * model.centre - model.centre) / model.size;
+  }
+  return residual;
+}
+
+}  // namespace polyglide

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Dense>
+
+namespace polyglide {
+
+/// A rank decided by the largest gap between neighbouring singular values.
+struct RankDecision {
+  int rank = 0;
+  double gap = 0;       ///< smallest kept / largest dropped singular value, at most 1e16
+  double smallest = 0;  ///< smallest kept singular value
+  double largest = 0;   ///< largest singular value, 0 for an empty or zero matrix
+};
+
+/// Decides a rank from singular values in descending order.
+///
+/// Fixed thresholds fail at drawing precision; the largest ratio of neighbours
+/// does not. Values below 1e-12 of the largest are rounding noise and count as
+/// equal; a value above 1e-4 of the largest is never dropped.
+/// An empty or zero matrix has rank 0.
+[[nodiscard]] RankDecision decide_rank(const Eigen::VectorXd& singular_values);
+
+/// Rank and kernel of a matrix.
+struct Kernel {
+  RankDecision decision;
+  Eigen::MatrixXd basis;  ///< columns: orthonormal basis of the kernel, cols × (cols - rank)
+};
+
+/// Kernel by Jacobi SVD (BDCSVD of Eigen 3.4.0 is wrong on screw matrices).
+/// A matrix without rows has the identity as kernel and an infinite gap (1e16).
+[[nodiscard]] Kernel kernel_of(const Eigen::MatrixXd& matrix);
+
+/// Singular values only.
+[[nodiscard]] RankDecision rank_of(const Eigen::MatrixXd& matrix);
+
+}  // namespace polyglide
