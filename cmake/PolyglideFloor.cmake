@@ -2,6 +2,28 @@
 set(POLYGLIDE_FLOORS catalog kinematics synthesis optimizer report)
 set_property(GLOBAL PROPERTY GLOBAL_DEPENDS_NO_CYCLES ON)
 
+# polyglide_precompile(<target>)
+#
+# Lets a target start from the big third-party headers instead of reading them
+# again for every file. Libraries and programs are compiled with different code
+# models, so there is one such header for each kind.
+function(polyglide_precompile target)
+  if(NOT POLYGLIDE_PCH)
+    return()
+  endif()
+  get_target_property(kind ${target} TYPE)
+  set(owner polyglide_precompiled_${kind})
+  if(NOT TARGET ${owner})
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${owner}.cpp CONTENT "")
+    add_library(${owner} OBJECT ${PROJECT_BINARY_DIR}/${owner}.cpp)
+    target_link_libraries(${owner} PRIVATE Eigen3::Eigen nlohmann_json::nlohmann_json polyglide_options)
+    target_precompile_headers(${owner} PRIVATE <Eigen/Dense> <map> <nlohmann/json.hpp> <string> <vector>)
+    get_target_property(relocatable ${target} POSITION_INDEPENDENT_CODE)
+    set_target_properties(${owner} PROPERTIES POSITION_INDEPENDENT_CODE ${relocatable})
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${owner})
+endfunction()
+
 # polyglide_add_floor(<name> [USES floor...] [PUBLIC target...] [PRIVATE target...])
 #
 # Defines polyglide::<name> from every .cpp beside its headers. Headers are
@@ -20,12 +42,14 @@ function(polyglide_add_floor name)
     endif()
   endforeach()
 
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.cpp
+                                    ${PROJECT_SOURCE_DIR}/${name}/README.md)
   file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${name}/*.hpp)
-  add_library(polyglide_${name} STATIC ${sources})
+  add_library(polyglide_${name} STATIC ${sources} ${headers})
   add_library(polyglide::${name} ALIAS polyglide_${name})
   set_target_properties(polyglide_${name} PROPERTIES EXPORT_NAME ${name}
-                                                     POSITION_INDEPENDENT_CODE ON)
+                                                     POSITION_INDEPENDENT_CODE ON
+                                                     LINKER_LANGUAGE CXX)
   target_compile_features(polyglide_${name} PUBLIC cxx_std_20)
   target_include_directories(
     polyglide_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
@@ -33,6 +57,7 @@ function(polyglide_add_floor name)
   list(TRANSFORM arg_USES PREPEND polyglide::)
   target_link_libraries(polyglide_${name} PUBLIC ${arg_USES} ${arg_PUBLIC}
                         PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:polyglide_options>)
+  polyglide_precompile(polyglide_${name})
   install(TARGETS polyglide_${name} EXPORT polyglide COMPONENT dev)
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/polyglide/${name}
           COMPONENT dev)
