@@ -30,12 +30,8 @@ std::string help() {
 [[noreturn]] void refuse_command(const std::string& word) {
   std::vector<std::string> names;
   for (const Command& command : commands()) names.emplace_back(command.name);
-  throw InputError(
-      {{.file = "",
-        .pointer = "",
-        .value = word,
-        .rule = "polyglide has no such command",
-        .hint = near.empty() ? "see polyglide --help" : "did you mean " + near + "?"}});
+  throw InputError({wrong_argument(word, "polyglide has no such command (see polyglide --help)",
+                                   nearest_word(word, names))});
 }
 
 int run(const Words& words) {

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 const fs::path kSource = POLYGLIDE_SOURCE_DIR;
 const std::array<std::string, 6> kFloors{"catalog",   "kinematics", "synthesis",
                                          "optimizer", "report",     "cli"};
-const std::array<std::string, 7> kMadeFolders{".git",     "build", "node_modules", "runs",
+const std::array<std::string, 7> kMadeFolders{".git",        "build", "node_modules", "runs",
                                               "__pycache__", "dist",  ".cache"};
 
 bool contains(const auto& range, const auto& value) {
@@ -39,7 +39,9 @@ std::vector<fs::path> files_below(const fs::path& folder) {
   return files;
 }
 
-bool is_code(const fs::path& file) { return file.extension() == ".cpp" || file.extension() == ".hpp"; }
+bool is_code(const fs::path& file) {
+  return file.extension() == ".cpp" || file.extension() == ".hpp";
+}
 
 bool is_build_file(const fs::path& file) {
   return file.filename() == "CMakeLists.txt" || file.filename() == "CMakePresets.json" ||
@@ -91,7 +93,9 @@ TEST(House, EveryHeaderIsIncludedOnce) {
     for (const fs::path& file : files_below(kSource / floor)) {
       if (file.extension() != ".hpp") continue;
       std::string first;
-      for_each_line(file, [&](const std::string& line, int) { if (first.empty()) first = line; });
+      for_each_line(file, [&](const std::string& line, int) {
+        if (first.empty()) first = line;
+      });
       EXPECT_EQ(first, "#pragma once") << file;
     }
   }
@@ -113,13 +117,18 @@ TEST(House, NoBuildFileAllowsInexactArithmetic) {
 // so that this file does not name them either.
 TEST(House, NoFileNamesARegistryOrADevelopersFolder) {
   const std::string slash = "/";
-  const std::vector<std::string> words{
-      std::string("registry.") + "npmjs",  std::string("registry.") + "yarnpkg",
-      std::string("pypi.") + "org",        std::string("pythonhosted.") + "org",
-      std::string("deb.") + "debian.org",  std::string("crates") + ".io",
-      std::string("proxy.") + "golang",    slash + "work" + slash,
-      slash + "home" + slash,              slash + "root" + slash,
-      slash + "Users" + slash,             std::string("../") + "shared"};
+  const std::vector<std::string> words{std::string("registry.") + "npmjs",
+                                       std::string("registry.") + "yarnpkg",
+                                       std::string("pypi.") + "org",
+                                       std::string("pythonhosted.") + "org",
+                                       std::string("deb.") + "debian.org",
+                                       std::string("crates") + ".io",
+                                       std::string("proxy.") + "golang",
+                                       slash + "work" + slash,
+                                       slash + "home" + slash,
+                                       slash + "root" + slash,
+                                       slash + "Users" + slash,
+                                       std::string("../") + "shared"};
   for (const fs::path& file : files_below(kSource)) {
     for_each_line(file, [&](const std::string& line, int number) {
       for (const std::string& word : words) {
