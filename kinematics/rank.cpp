@@ -11,28 +11,29 @@ constexpr double kLargestGap = 1e16;
 
 }  // namespace
 
-RankDecision decide_rank(const Eigen::VectorXd& s) {
+RankDecision decide_rank(const Eigen::VectorXd& s, double reference) {
   RankDecision decision;
   const int count = static_cast<int>(s.size());
+  const double top = std::max(count > 0 ? s[0] : 0, reference);
   decision.gap = kLargestGap;
-  if (count == 0 || !(s[0] > 0)) return decision;
+  if (count == 0 || !(top > 0)) return decision;
   decision.largest = s[0];
 
+  // kept(r) is the last value kept when the rank is r; rank 0 keeps the reference.
+  const auto kept = [&](int r) { return r > 0 ? s[r - 1] / top : 1; };
+  const auto dropped = [&](int r) { return r < count ? s[r] / top : 0; };
   double best = 0;
-  for (int r = 1; r <= count; ++r) {
-    const double next = r < count ? s[r] / s[0] : 0;
-    if (next > kNeverDrop) continue;
-    const double ratio = std::max(s[r - 1] / s[0], kNoise) / std::max(next, kNoise);
+  for (int r = reference > 0 ? 0 : 1; r <= count; ++r) {
+    if (dropped(r) > kNeverDrop) continue;
+    const double ratio = std::max(kept(r), kNoise) / std::max(dropped(r), kNoise);
     if (ratio > best) {
       best = ratio;
       decision.rank = r;
     }
   }
-  decision.smallest = s[decision.rank - 1];
-  const double dropped = decision.rank < count ? s[decision.rank] : 0;
-  decision.gap = std::min(kLargestGap, decision.smallest / std::max(dropped, 1e-300));
-  // Nothing was dropped: the doubt is how far the smallest is from noise.
-  if (decision.rank == count) decision.gap = kLargestGap * decision.smallest / s[0];
+  decision.smallest = kept(decision.rank) * top;
+  // When nothing is dropped the doubt is how far the smallest is from rounding.
+  decision.gap = kept(decision.rank) / std::max(dropped(decision.rank), 1 / kLargestGap);
   return decision;
 }
 
@@ -49,9 +50,9 @@ Kernel kernel_of(const Eigen::MatrixXd& matrix) {
   return kernel;
 }
 
-RankDecision rank_of(const Eigen::MatrixXd& matrix) {
-  if (matrix.size() == 0) return decide_rank(Eigen::VectorXd());
-  return decide_rank(Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues());
+RankDecision rank_of(const Eigen::MatrixXd& matrix, double reference) {
+  if (matrix.size() == 0) return decide_rank(Eigen::VectorXd(), reference);
+  return decide_rank(Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues(), reference);
 }
 
 }  // namespace polyglide

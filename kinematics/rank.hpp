@@ -18,7 +18,9 @@ struct RankDecision {
 /// does not. Values below 1e-12 of the largest are rounding noise and count as
 /// equal; a value above 1e-4 of the largest is never dropped.
 /// An empty or zero matrix has rank 0.
-[[nodiscard]] RankDecision decide_rank(const Eigen::VectorXd& singular_values);
+/// @param reference a value known to be real, in the same scale (0 = none): with
+///        it everything can be dropped, so noise beside it has rank 0.
+[[nodiscard]] RankDecision decide_rank(const Eigen::VectorXd& singular_values, double reference = 0);
 
 /// Rank and kernel of a matrix.
 struct Kernel {
@@ -31,6 +33,6 @@ struct Kernel {
 [[nodiscard]] Kernel kernel_of(const Eigen::MatrixXd& matrix);
 
 /// Singular values only.
-[[nodiscard]] RankDecision rank_of(const Eigen::MatrixXd& matrix);
+[[nodiscard]] RankDecision rank_of(const Eigen::MatrixXd& matrix, double reference = 0);
 
 }  // namespace polyglide

@@ -1,0 +1,128 @@
+#include "kinematics/manifold.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace polyglide {
+namespace {
+
+constexpr double kClosed = 2e-13;      // aim
+constexpr double kAcceptable = 1e-10;  // good enough when Newton has stagnated
+constexpr int kMostIterations = 40;
+constexpr double kLongestStep = 0.6;   // [rad] of the fastest joint, keeps Newton on its branch
+
+/// (J Jᵀ + λ)⁻¹ with λ far below any singular value that matters.
+class DampedInverse {
+ public:
+  explicit DampedInverse(const Eigen::MatrixXd& jacobian) {
+    Eigen::MatrixXd gram = jacobian * jacobian.transpose();
+    const double scale = gram.trace() / std::max<double>(1, static_cast<double>(gram.rows()));
+    gram.diagonal().array() += 1e-11 * std::max(scale, 1e-6);
+    factor_.compute(gram);
+  }
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right) const { return factor_.solve(right); }
+
+ private:
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+};
+
+void move(const Model& model, Posture& posture, const std::vector<int>& active,
+          const Eigen::VectorXd& scaled) {
+  Eigen::VectorXd increments = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.freedoms.size()));
+  for (std::size_t i = 0; i < active.size(); ++i)
+    increments[active[i]] =
+        scaled[static_cast<Eigen::Index>(i)] * (model.freedoms[active[i]].translational ? model.size : 1);
+  advance(model, posture, increments);
+}
+
+Demand loops_and(const Goal& goal, const Model& model, const Posture& posture) {
+  const Eigen::MatrixXd screws = freedom_screws(model, posture);
+  Demand loops{closure_residual(model, posture), closure_jacobian(model, screws)};
+  if (!goal) return loops;
+  const Demand more = goal(posture, screws);
+  Demand both;
+  both.residual.resize(loops.residual.size() + more.residual.size());
+  both.residual << loops.residual, more.residual;
+  both.jacobian.resize(both.residual.size(), screws.cols());
+  both.jacobian << loops.jacobian, more.jacobian;
+  return both;
+}
+
+}  // namespace
+
+std::vector<int> all_freedoms(const Model& model) {
+  std::vector<int> active(model.freedoms.size());
+  std::iota(active.begin(), active.end(), 0);
+  return active;
+}
+
+std::vector<int> passive_freedoms(const Model& model) {
+  std::vector<int> active;
+  for (int f : all_freedoms(model))
+    if (std::find(model.drives.begin(), model.drives.end(), f) == model.drives.end()) active.push_back(f);
+  return active;
+}
+
+Eigen::MatrixXd columns(const Eigen::MatrixXd& matrix, const std::vector<int>& active) {
+  return matrix(Eigen::all, active);
+}
+
+Projection project(const Model& model, Posture& posture, const std::vector<int>& active,
+                   const Goal& goal) {
+  Projection result;
+  if (model.loop_joints.empty() && !goal) return {true, 0, 0};
+  for (;; ++result.iterations) {
+    Demand demand = loops_and(goal, model, posture);
+    result.residual = demand.residual.cwiseAbs().maxCoeff();
+    result.closed = result.residual < kClosed;
+    if (result.closed || result.iterations == kMostIterations || !(result.residual < 1e3)) break;
+    const Eigen::MatrixXd jacobian = columns(demand.jacobian, active);
+    Eigen::VectorXd step = -jacobian.transpose() * DampedInverse(jacobian).solve(demand.residual);
+    const double fastest = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
+    if (!(fastest > 1e-16)) break;
+    if (fastest > kLongestStep) step *= kLongestStep / fastest;
+    move(model, posture, active, step);
+  }
+  result.closed = result.residual < kAcceptable;
+  return result;
+}
+
+Eigen::VectorXd tangent(const Model& model, const Posture& posture, const std::vector<int>& active,
+                        const Eigen::VectorXd& direction) {
+  Eigen::VectorXd along = direction;
+  if (!model.loop_joints.empty()) {
+    const Eigen::MatrixXd jacobian = columns(closure_jacobian(model, posture), active);
+    const DampedInverse inverse(jacobian);
+    // Twice: the second pass removes what rounding and λ left of the first.
+    for (int pass = 0; pass < 2; ++pass)
+      along -= jacobian.transpose() * inverse.solve(jacobian * along);
+  }
+  const double fastest = along.size() > 0 ? along.cwiseAbs().maxCoeff() : 0;
+  if (fastest < 1e-7 * direction.norm()) return Eigen::VectorXd::Zero(direction.size());
+  return along / fastest;
+}
+
+bool step_along(const Model& model, Posture& posture, const std::vector<int>& active,
+                const Eigen::VectorXd& tangent, double length) {
+  Posture trial = posture;
+  move(model, trial, active, length * tangent);
+  if (!project(model, trial, active).closed) return false;
+  posture = std::move(trial);
+  return true;
+}
+
+double displacement(const Model& model, const Posture& a, const Posture& b, int body) {
+  const Transform relative = a.bodies[body].inverse() * b.bodies[body];
+  const Vector3 centre = a.bodies[body].inverse() * model.centre;
+  return std::max(Eigen::AngleAxisd(relative.linear()).angle(),
+                  (relative * centre - centre).norm() / model.size);
+}
+
+double displacement(const Model& model, const Posture& a, const Posture& b) {
+  double largest = 0;
+  for (int body = 0; body < static_cast<int>(model.mechanism.bodies.size()); ++body)
+    largest = std::max(largest, displacement(model, a, b, body));
+  return largest;
+}
+
+}  // namespace polyglide

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "kinematics/model.hpp"
+
+namespace polyglide {
+
+/// Freedoms that may move: all of them, or all but the drives.
+[[nodiscard]] std::vector<int> all_freedoms(const Model& model);
+[[nodiscard]] std::vector<int> passive_freedoms(const Model& model);
+
+/// The columns of `matrix` that belong to `active` freedoms.
+[[nodiscard]] Eigen::MatrixXd columns(const Eigen::MatrixXd& matrix, const std::vector<int>& active);
+
+/// Why a projection stopped and what it left.
+struct Projection {
+  bool closed = false;
+  double residual = 0;  ///< largest closure error [rad, or length/size]
+  int iterations = 0;
+};
+
+/// A demand beside loop closure: appends its scaled residual and the rows of its
+/// derivative by all freedoms (scaled), given the screws of the posture.
+struct Demand {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;
+};
+using Goal = std::function<Demand(const Posture& posture, const Eigen::MatrixXd& screws)>;
+
+/// Pulls a posture back onto the constraint manifold by moving `active`
+/// freedoms as little as possible: Newton with damped normal equations
+/// (J Jᵀ + λ) y = -r, δ = Jᵀ y, which redundant constraints do not disturb
+/// because Jᵀ annihilates whatever λ cannot resolve.
+/// With a goal: onto the part of the manifold where the goal holds too.
+[[nodiscard]] Projection project(const Model& model, Posture& posture, const std::vector<int>& active,
+                                 const Goal& goal = {});
+
+/// The part of `direction` (scaled, one entry per active freedom) that keeps the
+/// loops closed to first order, with its largest entry scaled to 1; zero when
+/// nothing of it does.
+[[nodiscard]] Eigen::VectorXd tangent(const Model& model, const Posture& posture,
+                                      const std::vector<int>& active,
+                                      const Eigen::VectorXd& direction);
+
+/// Moves `length` along a tangent [rad, or length/size of the fastest joint] and
+/// projects back. False, posture unchanged, when the loops cannot be closed again.
+[[nodiscard]] bool step_along(const Model& model, Posture& posture, const std::vector<int>& active,
+                              const Eigen::VectorXd& tangent, double length);
+
+/// Largest displacement between two postures, of any body or of one:
+/// rotation [rad] or translation/size.
+[[nodiscard]] double displacement(const Model& model, const Posture& a, const Posture& b);
+[[nodiscard]] double displacement(const Model& model, const Posture& a, const Posture& b, int body);
+
+}  // namespace polyglide
