@@ -9,10 +9,14 @@
 
 namespace polyglide {
 
+/// The text of a file. @throws InputError: missing, unreadable, larger than 64 MB.
+[[nodiscard]] std::string read_text(const std::filesystem::path& file);
+
 /// Reads and parses a JSON file.
 /// Refused with an InputError, never a crash: missing or unreadable file, empty
-/// file, text that is not JSON (line and column), nesting deeper than 64, the
-/// same key twice in one object, numbers that are not finite.
+/// file, more than 64 MB or 2 million values, text that is not JSON (line and
+/// column), nesting deeper than 64, the same key twice in one object, numbers that
+/// are not finite.
 [[nodiscard]] nlohmann::json read_json(const std::filesystem::path& file);
 
 /// The same from text in memory; `file` labels messages.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace polyglide {
@@ -25,6 +26,20 @@ enum class JointType {
 
 /// Number of freedoms of a joint kind: 1 1 1 2 2 3 3 0.
 [[nodiscard]] int freedoms(JointType type);
+
+/// Is freedom `index` of the kind a translation (coordinate in metres, else
+/// radians)? Cylindrical: rotation, then translation. Planar: two translations,
+/// then the rotation. Helical counts as a rotation.
+[[nodiscard]] bool is_translation(JointType type, int index);
+
+/// The word of the mechanism format: "revolute", "prismatic", …
+[[nodiscard]] std::string to_string(JointType type);
+
+/// The joint kind of a word of the format; nullopt for any other word.
+[[nodiscard]] std::optional<JointType> joint_type(std::string_view word);
+
+/// All words, in the order of the enumeration.
+[[nodiscard]] const std::vector<std::string>& joint_words();
 
 /// Closed interval of a joint coordinate, measured from home [m or rad].
 struct Range {
