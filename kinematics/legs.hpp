@@ -31,7 +31,14 @@ struct LegMachine {
 };
 
 /// Recognises such a machine; nullopt for any other (then the general solver
-/// is used). Passive limbs (no drive) make a machine general.
+/// is used). Makes a machine general: a limb without drive, a drive without limb,
+/// any other joint kind, a range on a passive joint, a half-space limit on a rod or strut.
 [[nodiscard]] std::optional<LegMachine> recognise_legs(const Model& model);
+
+/// Index of a leg whose carriage is `body`, -1 when it is none's.
+[[nodiscard]] int carriage_leg(const Mechanism& mechanism, const LegMachine& machine, int body);
+
+/// The body at the platform end of a leg: the rod, or the strut's upper part.
+[[nodiscard]] int leg_body(const Mechanism& mechanism, const Leg& leg);
 
 }  // namespace polyglide

@@ -1,0 +1,158 @@
+#include "kinematics/legs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace polyglide {
+namespace {
+
+bool turns_freely(const Joint& joint) {
+  return (joint.type == JointType::universal || joint.type == JointType::spherical) &&
+         joint.driven.empty() &&
+         std::all_of(joint.range.begin(), joint.range.end(), [](const Range& range) {
+           return std::isinf(range.min) && std::isinf(range.max);
+         });
+}
+
+bool is_drive(const Joint& joint) {
+  return joint.type == JointType::prismatic && !joint.driven.empty();
+}
+
+/// Walks from the platform to the base, limb by limb, and ticks off every joint.
+class Recogniser {
+ public:
+  explicit Recogniser(const Model& model)
+      : model_(model), mechanism_(model.mechanism), joints_of_(mechanism_.bodies.size()),
+        used_(mechanism_.joints.size(), false) {
+    for (int j = 0; j < static_cast<int>(mechanism_.joints.size()); ++j)
+      for (int body : mechanism_.joints[j].bodies) joints_of_[body].push_back(j);
+  }
+
+  std::optional<LegMachine> recognise() {
+    LegMachine machine;
+    for (int joint : joints_of_[mechanism_.platform]) {
+      const std::optional<Leg> leg = leg_from(joint);
+      if (!leg) return std::nullopt;
+      machine.legs.push_back(*leg);
+    }
+    if (!std::all_of(used_.begin(), used_.end(), [](bool used) { return used; })) return std::nullopt;
+    for (int drive = 0; drive < static_cast<int>(model_.drives.size()); ++drive) {
+      const auto leg = std::find_if(machine.legs.begin(), machine.legs.end(),
+                                    [drive](const Leg& l) { return l.drive == drive; });
+      if (leg == machine.legs.end()) return std::nullopt;
+      machine.primary.push_back(static_cast<int>(leg - machine.legs.begin()));
+    }
+    if (machine.primary.empty() || !limits_are_closed_form(machine)) return std::nullopt;
+    return machine;
+  }
+
+ private:
+  int other_body(int joint, int body) const {
+    const auto& bodies = mechanism_.joints[joint].bodies;
+    return bodies[0] == body ? bodies[1] : bodies[0];
+  }
+
+  /// The second joint of a body that has exactly two, else -1.
+  int second_joint(int body, int first) const {
+    const std::vector<int>& joints = joints_of_[body];
+    if (joints.size() != 2) return -1;
+    return joints[0] == first ? joints[1] : joints[0];
+  }
+
+  int drive_of(int joint) const {
+    const int freedom = model_.first_freedom[joint];
+    const auto drive = std::find(model_.drives.begin(), model_.drives.end(), freedom);
+    return static_cast<int>(drive - model_.drives.begin());
+  }
+
+  std::optional<Leg> leg_from(int platform_joint) {
+    if (!turns_freely(mechanism_.joints[platform_joint])) return std::nullopt;
+    const int rod = other_body(platform_joint, mechanism_.platform);
+    const int next = second_joint(rod, platform_joint);
+    if (rod == mechanism_.base || next < 0) return std::nullopt;
+    if (turns_freely(mechanism_.joints[next])) return guide_leg(platform_joint, rod, next);
+    if (is_drive(mechanism_.joints[next])) return strut_leg(platform_joint, rod, next);
+    return std::nullopt;
+  }
+
+  Leg leg_between(int base_joint, int platform_joint, int drive_joint) {
+    used_[base_joint] = used_[platform_joint] = used_[drive_joint] = true;
+    Leg leg;
+    leg.drive = drive_of(drive_joint);
+    leg.base_joint = base_joint;
+    leg.platform_joint = platform_joint;
+    leg.base_point = mechanism_.joints[base_joint].at;
+    leg.platform_point = mechanism_.joints[platform_joint].at;
+    leg.length = (leg.platform_point - leg.base_point).norm();
+    const std::vector<Range>& range = mechanism_.joints[drive_joint].range;
+    if (!range.empty()) leg.stroke = range.front();
+    return leg;
+  }
+
+  std::optional<Leg> guide_leg(int platform_joint, int rod, int carriage_joint) {
+    const int carriage = other_body(carriage_joint, rod);
+    int guide = -1;
+    for (int joint : joints_of_[carriage])
+      if (is_drive(mechanism_.joints[joint]) && other_body(joint, carriage) == mechanism_.base)
+        guide = guide < 0 ? joint : static_cast<int>(mechanism_.joints.size());
+    if (guide < 0 || guide == static_cast<int>(mechanism_.joints.size())) return std::nullopt;
+    Leg leg = leg_between(carriage_joint, platform_joint, guide);
+    if (!(leg.length > 0)) return std::nullopt;
+    const Joint& joint = mechanism_.joints[guide];
+    leg.direction = joint.bodies[0] == mechanism_.base ? joint.axes[0] : Vector3(-joint.axes[0]);
+    leg.side = (leg.platform_point - leg.base_point).dot(leg.direction) > 0 ? -1 : 1;
+    return leg;
+  }
+
+  std::optional<Leg> strut_leg(int platform_joint, int upper, int drive_joint) {
+    const int lower = other_body(drive_joint, upper);
+    const int base_joint = second_joint(lower, drive_joint);
+    if (base_joint < 0 || !turns_freely(mechanism_.joints[base_joint]) ||
+        other_body(base_joint, lower) != mechanism_.base)
+      return std::nullopt;
+    Leg leg = leg_between(base_joint, platform_joint, drive_joint);
+    if (!(leg.length > 0)) return std::nullopt;
+    leg.kind = Leg::Kind::strut;
+    // The telescope must slide along the line between its ends, and grow with its drive.
+    leg.direction = (leg.platform_point - leg.base_point) / leg.length;
+    const Joint& joint = mechanism_.joints[drive_joint];
+    const Vector3 axis = joint.bodies[0] == lower ? joint.axes[0] : Vector3(-joint.axes[0]);
+    if ((axis - leg.direction).norm() > 1e-6) return std::nullopt;
+    return leg;
+  }
+
+  /// A limit may only concern bodies whose place follows from pose and drives.
+  bool limits_are_closed_form(const LegMachine& machine) const {
+    return std::all_of(mechanism_.limits.begin(), mechanism_.limits.end(), [&](const auto& limit) {
+      if (limit.body == mechanism_.base || limit.body == mechanism_.platform) return true;
+      return carriage_leg(mechanism_, machine, limit.body) >= 0;
+    });
+  }
+
+  const Model& model_;
+  const Mechanism& mechanism_;
+  std::vector<std::vector<int>> joints_of_;
+  std::vector<bool> used_;
+};
+
+}  // namespace
+
+int carriage_leg(const Mechanism& mechanism, const LegMachine& machine, int body) {
+  for (int i = 0; i < static_cast<int>(machine.legs.size()); ++i) {
+    const Leg& leg = machine.legs[i];
+    if (leg.kind != Leg::Kind::guide_rod) continue;
+    const int rod_end = leg_body(mechanism, leg);
+    const auto& bodies = mechanism.joints[leg.base_joint].bodies;
+    if (body != rod_end && (bodies[0] == body || bodies[1] == body)) return i;
+  }
+  return -1;
+}
+
+int leg_body(const Mechanism& mechanism, const Leg& leg) {
+  const auto& bodies = mechanism.joints[leg.platform_joint].bodies;
+  return bodies[0] == mechanism.platform ? bodies[1] : bodies[0];
+}
+
+std::optional<LegMachine> recognise_legs(const Model& model) { return Recogniser(model).recognise(); }
+
+}  // namespace polyglide
