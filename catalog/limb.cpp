@@ -117,6 +117,12 @@ void expand_guide(Copy& copy, const json& limb) {
     const Range limits = reader.interval(stroke, reader.units().metres);
     slide.range = {{limits.min - home, limits.max - home}};
   }
+  if (const json& travel = member(guide, "travel"); !travel.is_null()) {
+    const double limit = reader.positive_length(travel);
+    if (!slide.range.empty())
+      reader.problems().add(travel, "either the stroke or the travel of a guide can be given");
+    slide.range = {{-limit, limit}};
+  }
 
   const auto append_rod = [&](const std::string& suffix, const Vector3& aside) {
     const std::string body = copy.name + ".rod" + suffix;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <regex>
@@ -139,30 +140,45 @@ class Checker {
     }
   }
 
-  /// anyOf and oneOf (our branches exclude each other): one branch must hold. When
-  /// none does, the mistakes of the branch that was probably meant are told.
+  /// anyOf: one branch must hold. When none does, the mistakes of the branch that
+  /// was probably meant are told. oneOf: our schemas use it only for groups of
+  /// members of which exactly one must be there.
   void check_branches(const json& value, const json& schema, const std::string& pointer) {
-    for (const char* keyword : {"anyOf", "oneOf"}) {
-      const auto branches = schema.find(keyword);
-      if (branches == schema.end()) continue;
-      const std::string about = about_;
-      std::vector<Diagnostic> outside = std::move(found_);
-      std::vector<Diagnostic> meant;
-      bool holds = false;
-      for (const json& branch : *branches) {
-        found_.clear();
-        check(value, branch, pointer, "");
-        holds = holds || found_.empty();
-        const bool wrong_kind = found_.size() == 1 && found_[0].pointer == pointer &&
-                                found_[0].rule.starts_with("must be of type");
-        if (!wrong_kind && (meant.empty() || found_.size() < meant.size())) meant = found_;
-      }
-      found_ = std::move(outside);
-      about_ = about;
-      if (holds) continue;
-      if (meant.empty()) add(value, pointer, "has the wrong form");
-      else found_.insert(found_.end(), meant.begin(), meant.end());
+    if (const auto branches = schema.find("anyOf"); branches != schema.end())
+      check_any(value, *branches, pointer);
+    if (const auto groups = schema.find("oneOf"); groups != schema.end() && value.is_object())
+      check_groups(value, *groups, pointer);
+  }
+
+  void check_any(const json& value, const json& branches, const std::string& pointer) {
+    const std::string about = about_;
+    std::vector<Diagnostic> outside = std::move(found_);
+    std::vector<Diagnostic> meant;
+    bool holds = false;
+    for (const json& branch : branches) {
+      found_.clear();
+      check(value, branch, pointer, "");
+      holds = holds || found_.empty();
+      const bool wrong_kind = found_.size() == 1 && found_[0].pointer == pointer &&
+                              found_[0].rule.starts_with("must be of type");
+      if (!wrong_kind && (meant.empty() || found_.size() < meant.size())) meant = found_;
     }
+    found_ = std::move(outside);
+    about_ = about;
+    if (holds) return;
+    if (meant.empty()) add(value, pointer, "has the wrong form");
+    else found_.insert(found_.end(), meant.begin(), meant.end());
+  }
+
+  void check_groups(const json& value, const json& groups, const std::string& pointer) {
+    int complete = 0;
+    std::string rule = "exactly one of these must be given:";
+    for (const json& group : groups) {
+      const std::vector<std::string> names = strings(group.at("required"));
+      complete += std::ranges::all_of(names, [&](const auto& name) { return value.contains(name); });
+      rule += fmt::format("{} {}", &group == &groups.front() ? "" : ",", words(group["required"], " with "));
+    }
+    if (complete != 1) add(value, pointer, rule);
   }
 
   void check_object(const json& value, const json& schema, const std::string& pointer) {
