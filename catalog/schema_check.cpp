@@ -208,7 +208,8 @@ class Checker {
     const std::string place = pointer + '/' + step;
     if (const auto known = properties.find(name); known != properties.end())
       return check(member, *known, place, "");
-    for (const auto& [pattern, sub] : schema.value("patternProperties", json::object()).items())
+    const json patterns = schema.value("patternProperties", json::object());
+    for (const auto& [pattern, sub] : patterns.items())
       if (matches(pattern, name)) return check(member, sub, place, "");
     const auto additional = schema.find("additionalProperties");
     if (additional == schema.end() || *additional == true) return;
