@@ -30,16 +30,17 @@ std::filesystem::path polyglide_binary() {
   return given != nullptr ? given : POLYGLIDE_BINARY;
 }
 
-ProgramResult run_polyglide(const std::vector<std::string>& words) {
+ProgramResult run_polyglide(const std::vector<std::string>& words, const std::string& elsewhere) {
   const TemporaryFolder folder;
-  const auto out = folder.path() / "out", err = folder.path() / "err";
+  const std::filesystem::path out = elsewhere.empty() ? folder.path() / "out" : elsewhere;
+  const std::filesystem::path err = folder.path() / "err";
   std::string command = quoted(polyglide_binary().string());
   for (const std::string& word : words) command += ' ' + quoted(word);
   command += " </dev/null >" + quoted(out.string()) + " 2>" + quoted(err.string());
 
   const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(out),
-          contents(err)};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+          elsewhere.empty() ? contents(out) : "", contents(err)};
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -18,7 +18,9 @@ struct ProgramResult {
 [[nodiscard]] std::filesystem::path polyglide_binary();
 
 /// Runs `polyglide` with these words and no input, and waits for its end.
-[[nodiscard]] ProgramResult run_polyglide(const std::vector<std::string>& words);
+/// @param out where its standard output goes instead, "" to catch it.
+[[nodiscard]] ProgramResult run_polyglide(const std::vector<std::string>& words,
+                                          const std::string& out = "");
 
 /// A new empty folder under the system's temporary folder; removed when this goes.
 class TemporaryFolder {
