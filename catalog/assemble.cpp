@@ -93,9 +93,9 @@ void check_names(const std::vector<JointDraft>& drafts, Problems& problems) {
 
 /// Index of a body, which is added when it is new.
 int body_index(std::vector<std::string>& bodies, const std::string& name) {
-  const auto found = std::ranges::find(bodies, name);
-  if (found == bodies.end()) bodies.push_back(name);
-  return static_cast<int>(found - bodies.begin());
+  const auto index = static_cast<int>(std::ranges::find(bodies, name) - bodies.begin());
+  if (index == static_cast<int>(bodies.size())) bodies.push_back(name);
+  return index;
 }
 
 /// Every body must hang on the base, and the platform must be one of them.
