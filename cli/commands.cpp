@@ -5,6 +5,9 @@ namespace {
 
 constexpr Command kCommands[] = {
     {"catalog", "List the machines that come with polyglide, or show some", run_catalog},
+    {"check", "Say whether the drives hold the platform, and why", run_check},
+    {"pose", "Find drives for a pose, or poses for drives", run_pose},
+    {"workspace", "Measure where the platform can be, and how well", run_workspace},
     {"export", "Write a machine in a format for other tools", run_export},
 };
 

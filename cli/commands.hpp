@@ -27,6 +27,9 @@ struct Command {
 [[nodiscard]] std::span<const Command> commands();
 
 int run_catalog(CommandLine& line);
+int run_check(CommandLine& line);
+int run_pose(CommandLine& line);
+int run_workspace(CommandLine& line);
 int run_export(CommandLine& line);
 
 }  // namespace polyglide

@@ -30,6 +30,14 @@ std::vector<std::string> general_limit_names(const Machine& machine) {
   return names;
 }
 
+/// Whether a pure machine is asked for a coordinate that it does not have.
+bool is_stray(const Machine& machine, const Pose& pose) {
+  if (!machine.task.pure) return false;
+  Eigen::Matrix<double, 6, 1> rest = coordinates_of(pose);
+  for (int axis : machine.task.axes) rest[axis] = 0;
+  return rest.cwiseAbs().maxCoeff() > 1e-9;
+}
+
 /// Runs `work(first, last)` on blocks of fixed size, so that results do not
 /// depend on how many threads share them.
 template <typename Work>
@@ -90,13 +98,14 @@ void Evaluator::evaluate_legs(const PoseBatch& poses, BatchResult& result) const
 
 void Evaluator::evaluate_general(const PoseBatch& poses, BatchResult& result) const {
   const Model& model = machine_.model;
-  const int drives = static_cast<int>(model.drives.size());
   in_blocks(poses.size(), 16, [&](std::size_t first, std::size_t last) {
     Posture near = home(model);
     for (std::size_t i = first; i < last; ++i) {
       result.inverse_condition[i] = 0;
       result.orientation[i] = 0;
       const Pose pose{{poses.x[i], poses.y[i], poses.z[i]}, poses.rotation};
+      result.limit[i] = static_cast<int>(limit_names_.size()) - 1;
+      if (is_stray(machine_, pose)) continue;
       Posture posture = near;
       const InverseResult solved = solve_inverse_general(machine_, pose, posture);
       if (!solved.reachable) {
@@ -110,7 +119,7 @@ void Evaluator::evaluate_general(const PoseBatch& poses, BatchResult& result) co
       const auto jacobian = task_jacobian(machine_, posture);
       if (!jacobian) continue;
       result.inverse_condition[i] = 1 / condition_number(*jacobian);
-      if (jacobian->rows() != jacobian->cols() || drives == 0) continue;
+      if (jacobian->rows() != jacobian->cols() || jacobian->size() == 0) continue;
       const double det = jacobian->determinant();
       result.orientation[i] = static_cast<signed char>((det > 0) - (det < 0));
     }
@@ -121,6 +130,8 @@ int Evaluator::inverse(const Pose& pose, Eigen::VectorXd& drives) const {
   const Model& model = machine_.model;
   drives.resize(static_cast<Eigen::Index>(model.drives.size()));
   if (!kernel_) {
+    drives.setZero();
+    if (is_stray(machine_, pose)) return static_cast<int>(limit_names_.size()) - 1;
     Posture posture = home(model);
     const InverseResult solved = solve_inverse_general(machine_, pose, posture);
     drives = solved.drives;

@@ -63,10 +63,15 @@ struct Branch {
   std::optional<Posture> at;  ///< where free and locked were measured
 };
 
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& basis) {
+  return Eigen::HouseholderQR<Eigen::MatrixXd>(basis).householderQ() *
+         Eigen::MatrixXd::Identity(basis.rows(), basis.cols());
+}
+
 /// Sine of the largest angle from the smaller space to the larger.
 double separation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  const Eigen::MatrixXd& small = a.cols() <= b.cols() ? a : b;
-  const Eigen::MatrixXd& large = a.cols() <= b.cols() ? b : a;
+  const Eigen::MatrixXd small = orthonormal(a.cols() <= b.cols() ? a : b);
+  const Eigen::MatrixXd large = orthonormal(a.cols() <= b.cols() ? b : a);
   if (small.cols() == 0) return 0;
   const Eigen::MatrixXd rest = small - large * (large.transpose() * small);
   return Eigen::JacobiSVD<Eigen::MatrixXd>(rest).singularValues()[0];
@@ -135,15 +140,14 @@ void Analysis::explore_branches() {
       walks = std::min(4 * options_.walks, 100);
       continue;
     }
-    Freedoms near = freedoms_at(model_, walk->near, all_);
-    if (near.mobility != report_.home) walks = 4 * options_.walks;
-    const auto same = std::find_if(branches_.begin(), branches_.end(), [&](const Branch& branch) {
-      return branch.near_kernel.cols() == near.kernel.cols() &&
-             separation(branch.near_kernel, near.kernel) < kOtherBranch;
+    Kernel near = closure_kernel(model_, freedom_screws(model_, walk->near), all_);
+    if (near.basis.cols() != report_.home) walks = 4 * options_.walks;
+    auto branch = std::find_if(branches_.begin(), branches_.end(), [&](const Branch& known) {
+      return known.near_kernel.cols() == near.basis.cols() &&
+             separation(known.near_kernel, near.basis) < kOtherBranch;
     });
-    Branch& branch = same != branches_.end() ? *same : branches_.emplace_back();
-    if (same == branches_.end()) branch.near_kernel = std::move(near.kernel);
-    branch.far.push_back(std::move(walk->far));
+    if (branch == branches_.end()) branch = branches_.insert(branch, Branch{std::move(near.basis), {}, {}, {}, {}, {}});
+    branch->far.push_back(std::move(walk->far));
   }
   // A home that is as free as its surroundings is a smooth point: one branch only,
   // however far its tangent has turned on the first step.

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <queue>
+#include <algorithm>
+#include <numeric>
 #include <stdexcept>
 
 namespace polyglide {
@@ -104,31 +105,57 @@ void place_bodies(const Model& model, Posture& posture) {
   }
 }
 
-/// Breadth-first tree, so that paths are short; the other joints close loops.
+/// Joints in the order in which they should join the tree: driven ones and those
+/// with few freedoms first, so that loops are closed by passive joints with many
+/// freedoms, which leave the fewest equations.
+std::vector<int> tree_preference(const Mechanism& mechanism) {
+  std::vector<int> order(mechanism.joints.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](int j) {
+    return std::pair(mechanism.joints[j].driven.empty(), freedoms(mechanism.joints[j].type));
+  };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+  return order;
+}
+
+/// Spanning tree of the bodies by Kruskal's rule; the other joints close loops.
+std::vector<bool> choose_tree(const Mechanism& mechanism) {
+  std::vector<int> group(mechanism.bodies.size());
+  std::iota(group.begin(), group.end(), 0);
+  std::vector<bool> in_tree(mechanism.joints.size(), false);
+  for (int j : tree_preference(mechanism)) {
+    const auto [first, second] = mechanism.joints[j].bodies;
+    const int from = group[second], to = group[first];
+    if (from == to) continue;
+    in_tree[j] = true;
+    std::replace(group.begin(), group.end(), from, to);
+  }
+  return in_tree;
+}
+
+/// Walks the tree outwards from the base and notes every body's path.
 void build_tree(Model& model) {
   const Mechanism& mechanism = model.mechanism;
   const int bodies = static_cast<int>(mechanism.bodies.size());
   const int joints = static_cast<int>(mechanism.joints.size());
+  const std::vector<bool> in_tree = choose_tree(mechanism);
   model.parent_joint.assign(bodies, -1);
   model.path = Eigen::MatrixXi::Zero(bodies, joints);
-  std::vector<bool> seen(bodies, false), in_tree(joints, false);
-  std::queue<int> queue;
-  queue.push(mechanism.base);
+  std::vector<bool> seen(bodies, false);
+  model.body_order = {mechanism.base};
   seen[mechanism.base] = true;
-  while (!queue.empty()) {
-    const int body = queue.front();
-    queue.pop();
-    model.body_order.push_back(body);
+  for (std::size_t next = 0; next < model.body_order.size(); ++next) {
+    const int body = model.body_order[next];
     for (int j = 0; j < joints; ++j) {
       const auto [first, second] = mechanism.joints[j].bodies;
-      if (first != body && second != body) continue;
+      if (!in_tree[j] || (first != body && second != body)) continue;
       const int other = first == body ? second : first;
       if (seen[other]) continue;
-      seen[other] = in_tree[j] = true;
+      seen[other] = true;
       model.parent_joint[other] = j;
       model.path.row(other) = model.path.row(body);
       model.path(other, j) = other == second ? 1 : -1;
-      queue.push(other);
+      model.body_order.push_back(other);
     }
   }
   for (int b = 0; b < bodies; ++b)
@@ -246,27 +273,35 @@ Eigen::VectorXd freedom_scale(const Model& model) {
   return scale;
 }
 
-Eigen::MatrixXd closure_jacobian(const Model& model, const Eigen::MatrixXd& screws) {
-  // Scaled screws: moments about the centre, lengths in units of the size.
+Eigen::MatrixXd scaled_screws(const Model& model, const Eigen::MatrixXd& screws) {
   Eigen::MatrixXd scaled = screws;
   for (Eigen::Index f = 0; f < scaled.cols(); ++f) {
     const Vector3 w = scaled.col(f).head<3>();
     scaled.col(f).tail<3>() += w.cross(model.centre);
     scaled.col(f).tail<3>() /= model.freedoms[f].translational ? 1 : model.size;
   }
-  const Eigen::Index loops = static_cast<Eigen::Index>(model.loop_joints.size());
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(6 * loops, scaled.cols());
-  for (Eigen::Index loop = 0; loop < loops; ++loop) {
-    const int closing = model.loop_joints[loop];
-    const auto [first_body, second_body] = model.mechanism.joints[closing].bodies;
-    for (int j = 0; j < static_cast<int>(model.mechanism.joints.size()); ++j) {
-      // Around the loop: base → bodies[0], the closing joint, bodies[1] → base.
-      const int sign = j == closing ? 1 : model.path(first_body, j) - model.path(second_body, j);
-      const int first = model.first_freedom[j], count = freedoms(model.mechanism.joints[j].type);
-      if (sign != 0)
-        jacobian.block(6 * loop, first, 6, count) = sign * scaled.middleCols(first, count);
-    }
+  return scaled;
+}
+
+Eigen::MatrixXd loop_block(const Model& model, const Eigen::MatrixXd& scaled, int loop) {
+  const int closing = model.loop_joints[loop];
+  const auto [first_body, second_body] = model.mechanism.joints[closing].bodies;
+  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(6, scaled.cols());
+  for (int j = 0; j < static_cast<int>(model.mechanism.joints.size()); ++j) {
+    // Around the loop: base → bodies[0], the closing joint, bodies[1] → base.
+    const int sign = j == closing ? 1 : model.path(first_body, j) - model.path(second_body, j);
+    const int first = model.first_freedom[j], count = freedoms(model.mechanism.joints[j].type);
+    if (sign != 0) block.middleCols(first, count) = sign * scaled.middleCols(first, count);
   }
+  return block;
+}
+
+Eigen::MatrixXd closure_jacobian(const Model& model, const Eigen::MatrixXd& screws) {
+  const Eigen::MatrixXd scaled = scaled_screws(model, screws);
+  const int loops = static_cast<int>(model.loop_joints.size());
+  Eigen::MatrixXd jacobian(6 * loops, scaled.cols());
+  for (int loop = 0; loop < loops; ++loop)
+    jacobian.middleRows(6 * loop, 6) = loop_block(model, scaled, loop);
   return jacobian;
 }
 

@@ -61,6 +61,13 @@ void advance(const Model& model, Posture& posture, const Eigen::VectorXd& increm
 /// freedoms not on its tree path. [w; v at the base origin], base frame.
 [[nodiscard]] Eigen::MatrixXd body_jacobian(const Model& model, const Posture& posture, int body);
 
+/// The screws [w; v/size] at the centre, translations per `size`: what loop
+/// closure is measured in.
+[[nodiscard]] Eigen::MatrixXd scaled_screws(const Model& model, const Eigen::MatrixXd& screws);
+
+/// Rows of the loop-closure Jacobian that belong to one loop, 6×F.
+[[nodiscard]] Eigen::MatrixXd loop_block(const Model& model, const Eigen::MatrixXd& scaled, int loop);
+
 /// Loop-closure Jacobian, 6L×F, scaled: rows [w; v/size] taken at the centre,
 /// columns of translations per `size`. Kernel = instantaneous mobility.
 [[nodiscard]] Eigen::MatrixXd closure_jacobian(const Model& model, const Posture& posture);

@@ -24,12 +24,57 @@ std::string vector_text(const Vector3& v, double scale) {
                      tidy(v.z() * scale));
 }
 
+/// The active freedoms that belong to joints closing a loop, loop by loop, and the
+/// positions of all others in `active`.
+struct Split {
+  std::vector<std::vector<int>> closing;  ///< per loop: positions in `active`
+  std::vector<int> tree;                  ///< positions in `active`
+};
+
+Split split_freedoms(const Model& model, const std::vector<int>& active) {
+  Split split;
+  split.closing.resize(model.loop_joints.size());
+  for (int i = 0; i < static_cast<int>(active.size()); ++i) {
+    const int joint = model.freedoms[active[i]].joint;
+    const auto loop = std::find(model.loop_joints.begin(), model.loop_joints.end(), joint);
+    if (loop == model.loop_joints.end()) split.tree.push_back(i);
+    else split.closing[loop - model.loop_joints.begin()].push_back(i);
+  }
+  return split;
+}
+
 }  // namespace
+
+Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& screws, const std::vector<int>& active) {
+  const Split split = split_freedoms(model, active);
+  const Eigen::MatrixXd scaled = scaled_screws(model, screws);
+  const int loops = static_cast<int>(model.loop_joints.size());
+  Eigen::MatrixXd reduced(6 * loops, split.tree.size());
+  std::vector<Eigen::MatrixXd> rates(loops);  // of the closing joint per rate of the tree's freedoms
+  Eigen::Index rows = 0;
+  for (int loop = 0; loop < loops; ++loop) {
+    const Eigen::MatrixXd block = loop_block(model, scaled, loop)(Eigen::all, active);
+    const Eigen::MatrixXd tree = block(Eigen::all, split.tree);
+    const Eigen::MatrixXd own = block(Eigen::all, split.closing[loop]);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(own);
+    const Eigen::MatrixXd turned = qr.householderQ().transpose() * tree;
+    reduced.middleRows(rows, 6 - own.cols()) = turned.bottomRows(6 - own.cols());
+    rows += 6 - own.cols();
+    rates[loop] = -qr.matrixQR().topRows(own.cols()).triangularView<Eigen::Upper>().solve(
+        turned.topRows(own.cols()));
+  }
+  const Kernel tree = kernel_of(reduced.topRows(rows));
+  Kernel kernel{tree.decision, Eigen::MatrixXd(active.size(), tree.basis.cols())};
+  kernel.basis(split.tree, Eigen::all) = tree.basis;
+  for (int loop = 0; loop < loops; ++loop)
+    kernel.basis(split.closing[loop], Eigen::all) = rates[loop] * tree.basis;
+  return kernel;
+}
 
 Freedoms freedoms_at(const Model& model, const Posture& posture, const std::vector<int>& active) {
   Freedoms result;
   const Eigen::MatrixXd screws = freedom_screws(model, posture);
-  Kernel kernel = kernel_of(columns(closure_jacobian(model, screws), active));
+  Kernel kernel = closure_kernel(model, screws, active);
   result.rank = kernel.decision;
   result.kernel = std::move(kernel.basis);
   result.mobility = static_cast<int>(result.kernel.cols());

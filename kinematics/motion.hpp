@@ -5,6 +5,13 @@
 
 namespace polyglide {
 
+/// Kernel of loop closure with only `active` freedoms moving: rows in their order.
+/// The freedoms of the closing joints are eliminated first (each loop is projected
+/// on what its closing joint cannot do), which leaves the kernel as it is and the
+/// matrix a third as large. Columns are orthonormal in the other freedoms.
+[[nodiscard]] Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& screws,
+                                    const std::vector<int>& active);
+
 /// Instantaneous freedoms of a mechanism at one posture.
 struct Freedoms {
   RankDecision rank;          ///< of the loop-closure Jacobian

@@ -1,6 +1,9 @@
 #include "kinematics/rank.hpp"
 
+#include <lapacke.h>
+
 #include <algorithm>
+#include <stdexcept>
 
 namespace polyglide {
 namespace {
@@ -37,6 +40,31 @@ RankDecision decide_rank(const Eigen::VectorXd& s, double reference) {
   return decision;
 }
 
+namespace {
+
+/// Singular values, and all right singular vectors as columns when `v` is given.
+/// LAPACK's dgesdd: on screw matrices as right as Jacobi SVD and several times
+/// faster, while Eigen 3.4.0's BDCSVD is wrong on them.
+Eigen::VectorXd singular_values(Eigen::MatrixXd matrix, Eigen::MatrixXd* v) {
+  const auto rows = static_cast<lapack_int>(matrix.rows()), cols = static_cast<lapack_int>(matrix.cols());
+  Eigen::VectorXd values(std::min(rows, cols));
+  Eigen::MatrixXd left, right_transposed;
+  if (v) {
+    left.resize(rows, rows);
+    right_transposed.resize(cols, cols);
+  }
+  const lapack_int failed =
+      LAPACKE_dgesdd(LAPACK_COL_MAJOR, v ? 'A' : 'N', rows, cols, matrix.data(), rows, values.data(),
+                     left.data(), rows, right_transposed.data(), cols);
+  if (failed != 0)
+    throw std::invalid_argument(failed < 0 ? "singular_values: a matrix entry is not finite"
+                                           : "singular_values: no convergence");
+  if (v) *v = right_transposed.transpose();
+  return values;
+}
+
+}  // namespace
+
 Kernel kernel_of(const Eigen::MatrixXd& matrix) {
   Kernel kernel;
   if (matrix.rows() == 0 || matrix.cols() == 0) {
@@ -44,15 +72,15 @@ Kernel kernel_of(const Eigen::MatrixXd& matrix) {
     kernel.basis = Eigen::MatrixXd::Identity(matrix.cols(), matrix.cols());
     return kernel;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullV);
-  kernel.decision = decide_rank(svd.singularValues());
-  kernel.basis = svd.matrixV().rightCols(matrix.cols() - kernel.decision.rank);
+  Eigen::MatrixXd v;
+  kernel.decision = decide_rank(singular_values(matrix, &v));
+  kernel.basis = v.rightCols(matrix.cols() - kernel.decision.rank);
   return kernel;
 }
 
 RankDecision rank_of(const Eigen::MatrixXd& matrix, double reference) {
   if (matrix.size() == 0) return decide_rank(Eigen::VectorXd(), reference);
-  return decide_rank(Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues(), reference);
+  return decide_rank(singular_values(matrix, nullptr), reference);
 }
 
 }  // namespace polyglide

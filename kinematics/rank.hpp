@@ -28,8 +28,9 @@ struct Kernel {
   Eigen::MatrixXd basis;  ///< columns: orthonormal basis of the kernel, cols × (cols - rank)
 };
 
-/// Kernel by Jacobi SVD (BDCSVD of Eigen 3.4.0 is wrong on screw matrices).
-/// A matrix without rows has the identity as kernel and an infinite gap (1e16).
+/// Kernel by LAPACK's singular value decomposition.
+/// A matrix without rows has the identity as kernel and the largest gap, 1e16.
+/// @throws std::invalid_argument when an entry is not finite.
 [[nodiscard]] Kernel kernel_of(const Eigen::MatrixXd& matrix);
 
 /// Singular values only.
