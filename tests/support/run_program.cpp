@@ -32,7 +32,8 @@ std::filesystem::path polyglide_binary() {
 
 ProgramResult run_polyglide(const std::vector<std::string>& words, const std::string& elsewhere) {
   const TemporaryFolder folder;
-  const std::filesystem::path out = elsewhere.empty() ? folder.path() / "out" : elsewhere;
+  const std::filesystem::path out =
+      elsewhere.empty() ? folder.path() / "out" : std::filesystem::path(elsewhere);
   const std::filesystem::path err = folder.path() / "err";
   std::string command = quoted(polyglide_binary().string());
   for (const std::string& word : words) command += ' ' + quoted(word);
