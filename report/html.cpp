@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
-#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -34,21 +31,26 @@ constexpr std::string_view kShell = R"(<!DOCTYPE html>
 </html>
 )";
 
-std::optional<std::string> read_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(stream), {});
-}
-
 std::string escape_html(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else out += c;
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else
+      out += c;
   }
   return out;
+}
+
+std::string title_of(const nlohmann::json& run) {
+  for (const char* key : {"title", "name"}) {
+    if (run.contains(key) && run[key].is_string()) return run[key];
+  }
+  return "Design report";
 }
 
 /// Seven significant digits draw any picture; the rest would triple the page.
@@ -72,8 +74,10 @@ std::string island(const nlohmann::json& run) {
   std::string out;
   out.reserve(text.size());
   for (const char c : text) {
-    if (c == '<') out += "\\u003c";
-    else out += c;
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
   }
   return out;
 }
@@ -81,23 +85,26 @@ std::string island(const nlohmann::json& run) {
 }  // namespace
 
 WebBundle load_web_bundle() {
-  const std::vector<std::filesystem::path> places{data_directory() / "web", POLYGLIDE_WEB_DIR};
+  return load_web_bundle({data_directory() / "web", POLYGLIDE_WEB_DIR});
+}
+
+WebBundle load_web_bundle(const std::vector<std::filesystem::path>& places) {
   std::string tried;
   for (const auto& place : places) {
-    auto script = read_text(place / "report.js");
-    auto style = read_text(place / "report.css");
-    if (script && style) return {std::move(*script), std::move(*style)};
+    const auto script = place / "report.js", style = place / "report.css";
+    if (std::filesystem::exists(script) && std::filesystem::exists(style)) {
+      return {read_text(script), read_text(style)};
+    }
     tried += fmt::format("\n  {}", place.string());
   }
-  throw std::runtime_error(fmt::format(
-      "the report page's bundle (report.js and report.css) was not found in any of:{}\n"
-      "the build makes it (CMake target polyglide_web), the package installs it",
-      tried));
+  throw std::runtime_error(
+      fmt::format("the report page's bundle (report.js and report.css) was not found in any of:{}\n"
+                  "the build makes it (CMake target polyglide_web), the package installs it",
+                  tried));
 }
 
 std::string render_html(const nlohmann::json& run, const WebBundle& bundle) {
-  const std::string title = run.value("title", run.value("name", "polyglide report"));
-  return fmt::format(kShell, fmt::arg("title", escape_html(title)),
+  return fmt::format(kShell, fmt::arg("title", escape_html(title_of(run))),
                      fmt::arg("style", bundle.style), fmt::arg("run", island(run)),
                      fmt::arg("script", bundle.script));
 }

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
+#include <vector>
 
 namespace polyglide {
 
@@ -16,6 +16,9 @@ struct WebBundle {
 /// Finds and reads the bundle: in data_directory()/web, else where the build put it.
 /// @throws std::runtime_error naming every place that was tried, and what makes it.
 [[nodiscard]] WebBundle load_web_bundle();
+
+/// The same from the first of these folders that holds it.
+[[nodiscard]] WebBundle load_web_bundle(const std::vector<std::filesystem::path>& places);
 
 /// The report as one HTML text that needs nothing else: it opens from disk, loads
 /// nothing, and its content security policy forbids it to.

@@ -13,9 +13,12 @@ const FONT = { fontFamily: "inherit", color: INK, fontSize: 12 };
 /** An axis in the house style; `name` states quantity and unit. */
 export const axis = (name, extra = {}) => ({
   name, nameLocation: "middle", nameGap: 30, nameTextStyle: { ...FONT, color: MUTED },
-  axisLabel: { ...FONT, color: MUTED }, axisLine: { show: true, lineStyle: { color: MUTED } },
+  axisLabel: { ...FONT, color: MUTED }, axisLine: { show: true, onZero: false, lineStyle: { color: MUTED } },
   splitLine: { show: true, lineStyle: { color: GRID } }, ...extra,
 });
+
+/** Calls `act` in the frame after `node` changed its size, so that what it changes is no loop. */
+export const onResize = (node, act) => new ResizeObserver(() => requestAnimationFrame(act)).observe(node);
 
 const drawn = new Map();
 
@@ -26,7 +29,7 @@ export function draw(host, optionFor) {
   else {
     const chart = echarts.init(host, null, { renderer: "svg" });
     drawn.set(host, { chart, optionFor });
-    new ResizeObserver(() => refresh(host)).observe(host);
+    onResize(host, () => refresh(host));
   }
   refresh(host, true);
   return drawn.get(host).chart;
@@ -42,4 +45,5 @@ function refresh(host, force = false) {
   entry.chart.resize({ width, height: host.clientHeight });
   entry.chart.setOption({ animation: false, textStyle: FONT, ...option, height: undefined }, { notMerge: true });
   entry.chart.getZr().flush();
+  host.querySelector("svg")?.setAttribute("viewBox", `0 0 ${width} ${host.clientHeight}`);  // scales in print
 }

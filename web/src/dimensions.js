@@ -25,6 +25,6 @@ export function dimensions(entry) {
   return [
     drawing(entry),
     table(["Name", "Meaning", "Value", "Before tuning", "Bounds", "Unit", "Between the bounds"], rows, { numeric: [2, 3, 4], className: "dimensions" }),
-    el("p", { class: "note" }, "On the short line the filled mark is the value, the open mark where tuning started. A dimension at its bound would improve the result if the bound were moved."),
+    el("p", { class: "note" }, "On the short line the filled mark is the value, the open mark where tuning started. Where tuning ran into a bound, a wider one may give a better machine."),
   ];
 }

@@ -4,20 +4,10 @@ import { el, figure, svg } from "./dom.js";
 import { ACCENT, MUTED } from "./colours.js";
 import { number, quantity, unitName } from "./format.js";
 import { dimensionsOf } from "./measures.js";
-import { VIEWS, fit, sheetBounds, sketch } from "./projection.js";
+import { VIEWS, fit, sheetBounds, sketch, viewOf } from "./projection.js";
 
 const FRAME = { width: 420, height: 360, margin: 34 };
 const LABELS = 128;
-
-/** The view in which a measure is seen in its true length, or nearly. */
-function viewOf(measure) {
-  if (measure.view !== "longest") return measure.view;
-  const length = (view) => {
-    const [a, b] = [measure.a, measure.b].map(VIEWS[view].project);
-    return Math.hypot(a[0] - b[0], a[1] - b[1]);
-  };
-  return length("front") >= length("top") * 0.98 ? "front" : "top";
-}
 
 /** Label positions down the right edge, in the order of their anchors, never closer than a line. */
 function stack(anchors, height) {
@@ -33,10 +23,27 @@ function stack(anchors, height) {
   return sorted;
 }
 
-function annotation({ parameter, measure }, view, place) {
-  const [[x1, y1], [x2, y2]] = [measure.a, measure.b].map((p) => place(VIEWS[view].project(p)));
-  return { x1, y1, x2, y2, x: (x1 + x2) / 2, y: (y1 + y2) / 2, text: parameter.name, value: quantity(parameter.value, unitName(parameter.unit)), what: measure.what };
+/** The arc between a line and the level or plumb line through its lower end. */
+function arcOf({ from, to, what }) {
+  const [low, high] = from[1] > to[1] ? [from, to] : [to, from];
+  const length = Math.hypot(high[0] - low[0], high[1] - low[1]) || 1;
+  const radius = Math.min(34, 0.6 * length);
+  const line = [0, 1].map((k) => (high[k] - low[k]) / length);
+  const other = what.includes("vertical") ? [0, -1] : [line[0] < 0 ? -1 : 1, 0];
+  const point = (direction) => [0, 1].map((k) => low[k] + radius * direction[k]);
+  const half = [0, 1].map((k) => line[k] + other[k]);
+  const sweep = other[0] * line[1] - other[1] * line[0] > 0 ? 1 : 0;
+  return { path: `M${low}L${point(other)}A${radius} ${radius} 0 0 ${sweep} ${point(line)}`, middle: point(half.map((v) => v / (Math.hypot(...half) || 1))) };
 }
+
+function annotation({ parameter, measure }, view, place) {
+  const [from, to] = [measure.a, measure.b].map((p) => place(VIEWS[view].project(p)));
+  const [x, y] = measure.angular ? arcOf({ from, to, what: measure.what }).middle : [0, 1].map((k) => (from[k] + to[k]) / 2);
+  return { from, to, angular: measure.angular, x, y, text: parameter.name, value: quantity(parameter.value, unitName(parameter.unit)), what: measure.what };
+}
+
+/** A straight dimension with ticks at its ends. */
+const straight = ({ from, to }) => svg("line", { x1: from[0], y1: from[1], x2: to[0], y2: to[1], stroke: ACCENT, "stroke-width": 1.4, "marker-start": "url(#tick)", "marker-end": "url(#tick)" });
 
 function view(scene, name, found, scale) {
   const bounds = sheetBounds(scene, name);
@@ -49,7 +56,7 @@ function view(scene, name, found, scale) {
     sketch(scene, name, place),
     notes.map((n) => svg("g", { class: "dimension" },
       svg("title", {}, `${n.text}: ${n.what}, ${n.value}`),
-      svg("line", { x1: n.x1, y1: n.y1, x2: n.x2, y2: n.y2, stroke: ACCENT, "stroke-width": 1.4, "marker-start": "url(#tick)", "marker-end": "url(#tick)" }),
+      n.angular ? svg("path", { d: arcOf(n).path, stroke: ACCENT, "stroke-width": 1.4, fill: "none" }) : straight(n),
       svg("path", { d: `M${n.x} ${n.y}L${edge - 8} ${n.labelY - 4}H${edge}`, stroke: MUTED, "stroke-width": 0.7, fill: "none", "stroke-dasharray": "3 2" }),
       svg("circle", { cx: n.x, cy: n.y, r: 2.2, fill: ACCENT }),
       svg("text", { x: edge + 3, y: n.labelY, class: "label" }, svg("tspan", { class: "name" }, n.text), ` ${n.value}`)))),

@@ -1,7 +1,7 @@
 // One slice of the workspace as a heat map of 1/κ, in true proportion, with the
 // required zone and the inscribed cylinder drawn over it.
 import { axis } from "./charts.js";
-import { ACCENT, INK, VIRIDIS, viridis } from "./colours.js";
+import { ACCENT, INK, MUTED, VIRIDIS, viridis } from "./colours.js";
 import { el } from "./dom.js";
 import { number } from "./format.js";
 
@@ -32,7 +32,7 @@ function overlaySeries(name, shape, colour, dash) {
     renderItem: (_, api) => {
       const [x, y] = api.coord([shape.u * MM, shape.v * MM]);
       const [w, h] = api.size([shape.width * MM, shape.height * MM]);
-      const style = { fill: "none", stroke: colour, lineWidth: 2.4, lineDash: dash };
+      const style = { fill: "none", stroke: colour, lineWidth: dash ? 2 : 4, lineDash: dash };
       return shape.round ? { type: "ellipse", shape: { cx: x, cy: y, rx: w / 2, ry: h / 2 }, style }
         : { type: "rect", shape: { x: x - w / 2, y: y - h / 2, width: w, height: h }, style };
     },
@@ -73,7 +73,7 @@ export function heatmapOption(workspace, slice, top, width) {
   const zone = workspace.zone?.size && cut(slice, workspace.zone.center ?? [0, 0, 0], workspace.zone.size);
   const cylinder = workspace.inscribed_cylinder?.diameter && cylinderCut(slice, workspace.inscribed_cylinder);
   const tidy = (limit) => Number(number(limit, 3).replace("−", "-").replace(/\s/g, ""));
-  const bounds = (min, max) => ({ type: "value", min, max, splitLine: { show: false }, axisLabel: { ...axis("").axisLabel, hideOverlap: true, showMinLabel: false, showMaxLabel: false, formatter: (x) => String(tidy(x)) } });
+  const bounds = (min, max) => ({ type: "value", min, max, splitLine: { show: false }, axisLine: { onZero: false, show: true, lineStyle: { color: MUTED } }, axisLabel: { ...axis("").axisLabel, hideOverlap: true, showMinLabel: false, showMaxLabel: false, formatter: (x) => String(tidy(x)) } });
   return {
     height: grid.height + 74, grid,
     tooltip: { trigger: "item", confine: true, formatter: ({ value }) => `x ${number(value[0], 3)} mm, ${vertical} ${number(value[1], 3)} mm<br>1/κ ${number(value[2], 3)} (κ ${number(1 / value[2], 3)})` },
@@ -102,5 +102,5 @@ export function smallMap(slice, top) {
 
 /** The colour scale with its end values. */
 export const colourScale = (top) => el("div", { class: "scale" }, el("span", {}, "0 (singular)"),
-  el("i", { style: { background: `linear-gradient(to right, ${VIRIDIS.join(",")})` } }), el("span", {}, `${number(top, 2)} = 1/κ`),
+  el("i", { style: { background: `linear-gradient(to right, ${VIRIDIS.join(",")})` } }), el("span", {}, `1/κ = ${number(top, 2)}`),
   el("span", { class: "swatch", style: { color: INK } }, "white: not reachable"));

@@ -18,8 +18,7 @@ function jointIcon(type) {
 
 const driven = () => icon(svg("path", { d: "M2 7H20M6 3L2 7L6 11M16 3L20 7L16 11", stroke: JOINT.driven, "stroke-width": 2, fill: "none" }));
 
-export function legend(entry) {
-  const { scene, workspace } = entry;
+export function legend({ scene, workspace }, withWorkspace) {
   const roles = Object.keys(ROLES).filter((role) => scene.segments.some((s) => s.role === role));
   const types = [...new Set((scene.joints ?? []).map((j) => j.type))].filter((type) => JOINT_WORDS[type]);
   const item = (mark, words) => el("li", {}, mark, words);
@@ -27,7 +26,7 @@ export function legend(entry) {
     roles.map((role) => item(stroke(BODY[role], role === "rod" ? 2.4 : 4), ROLES[role])),
     types.map((type) => item(jointIcon(type), JOINT_WORDS[type])),
     (scene.joints ?? []).some((j) => j.driven) && item(driven(), "driven; the number is that of the slider"),
-    workspace?.slices?.length && item(stroke(OVERLAY.outline, 1.6), "workspace outline"),
-    workspace?.zone?.size && item(stroke(OVERLAY.zone, 1.6), "required zone"),
-    workspace?.inscribed_cylinder && item(stroke(OVERLAY.cylinder, 1.6), "largest cylinder inside"));
+    withWorkspace && item(stroke(OVERLAY.outline, 1.6), "workspace outline"),
+    withWorkspace && workspace.zone?.size && item(stroke(OVERLAY.zone, 1.6), "required zone"),
+    withWorkspace && workspace.inscribed_cylinder && item(stroke(OVERLAY.cylinder, 1.6), "largest cylinder inside"));
 }

@@ -123,5 +123,4 @@ function build() {
   requestAnimationFrame(() => requestAnimationFrame(() => guarded("page", () => countMarks(scheme))));
 }
 
-window.addEventListener("error", (event) => console.error("report:", event.message));
 build();

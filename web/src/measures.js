@@ -2,6 +2,7 @@
 // machine: lengths and angles are measured in the scene at home, and a parameter
 // is annotated only where its value is found again.
 import { distance } from "./posture.js";
+import { shownShare, viewOf } from "./projection.js";
 
 const PRECISION = 2e-6;  // relative; numbers in the page have seven digits
 
@@ -10,16 +11,16 @@ const leg = (name) => (name ?? "").split(".")[0];
 const middle = (points) => [0, 1, 2].map((k) => points.reduce((sum, p) => sum + p[k], 0) / points.length);
 
 /** A straight measure between two points of the scene, true length. */
-const between = (what, words, a, b, view) => ({ what, words, value: distance(a, b), angular: false, a, b, view });
+const between = (what, words, a, b, view, source = "") => ({ what, words, value: distance(a, b), angular: false, a, b, view, source });
 
 /** Distances of a point from an upright axis: radius, and along x and y. */
-function fromAxis(what, words, p, axis) {
+function fromAxis(what, words, p, axis, source) {
   const foot = [axis[0], axis[1], p[2]];
   const corner = [p[0], axis[1], p[2]];
   return [
-    between(`${what}, radius`, [...words, "radius"], foot, p, "top"),
-    between(`${what}, along x`, words, foot, corner, "top"),
-    between(`${what}, along y`, words, corner, p, "top"),
+    between(`${what}, radius`, [...words, "radius"], foot, p, "top", source),
+    between(`${what}, along x`, words, foot, corner, "top", source),
+    between(`${what}, along y`, words, corner, p, "top", source),
   ];
 }
 
@@ -27,30 +28,30 @@ function guideMeasures(guide) {
   const a = guide.from.at, b = guide.to.at, d = minus(b, a), length = distance(a, b);
   if (length < 1e-9) return [];
   const words = ["guide", "column", "drive", "rail"];
+  const source = leg(guide.name);
   const tilt = Math.asin(Math.min(1, Math.abs(d[2]) / length));
   const list = [
-    between("guide length", [...words, "stroke", "length"], a, b, Math.abs(d[2]) > length / 2 ? "front" : "top"),
-    { what: "guide to the horizontal", words: [...words, "lean", "angle"], value: tilt, angular: true, a, b, view: "front" },
-    { what: "guide to the vertical", words: [...words, "lean", "angle"], value: Math.PI / 2 - tilt, angular: true, a, b, view: "front" },
-    ...fromAxis("guide end", words, a, [0, 0, 0]), ...fromAxis("guide end", words, b, [0, 0, 0]),
+    between("guide length", [...words, "stroke", "length"], a, b, Math.abs(d[2]) > length / 2 ? "front" : "top", source),
+    { what: "guide to the horizontal", words: [...words, "lean", "angle"], value: tilt, angular: true, a, b, view: "front", source },
+    { what: "guide to the vertical", words: [...words, "lean", "angle"], value: Math.PI / 2 - tilt, angular: true, a, b, view: "front", source },
+    ...fromAxis("guide end", words, a, [0, 0, 0], source), ...fromAxis("guide end", words, b, [0, 0, 0], source),
   ];
   if (Math.abs(d[2]) > 1e-9 * length) {
     const foot = [0, 1, 2].map((k) => a[k] - (a[2] / d[2]) * d[k]);
-    list.push(...fromAxis("guide at the base plane", words, foot, [0, 0, 0]));
+    list.push(...fromAxis("guide at the base plane", words, foot, [0, 0, 0], source));
   }
   return list;
 }
 
 function rodMeasures(rods, tool) {
-  const list = rods.map((rod) => between(`${rod.role} length`, [rod.role, "length", rod.role === "link" ? "crank" : "rod"], rod.from.at, rod.to.at, "longest"));
+  const list = rods.map((rod) => between(`${rod.role} length`, [rod.role, "length", rod.role === "link" ? "crank" : "rod"], rod.from.at, rod.to.at, "longest", leg(rod.name)));
   const legs = new Map();
   for (const rod of rods) legs.set(leg(rod.name), [...(legs.get(leg(rod.name)) ?? []), rod]);
-  for (const group of legs.values()) {
+  for (const [source, group] of legs) {
     for (const end of ["from", "to"]) {
       const points = group.map((rod) => rod[end].at);
-      const words = end === "to" ? ["platform"] : ["carriage", "base"];
-      if (group.length === 2) list.push(between("spacing of the rods", ["spacing", "gap", "parallelogram", "width"], points[0], points[1], "longest"));
-      if (end === "to") for (const p of [middle(points), ...points]) list.push(...fromAxis("platform joint", words, p, tool));
+      if (group.length === 2) list.push(between("spacing of the rods", ["spacing", "gap", "parallelogram", "width"], points[0], points[1], "longest", source));
+      if (end === "to") for (const p of [middle(points), ...points]) list.push(...fromAxis("platform joint", ["platform"], p, tool, source));
     }
   }
   return list;
@@ -72,7 +73,7 @@ export function measures(scene) {
     ...role("tool").map((s) => between("tool length", ["tool", "overhang"], s.from.at, s.to.at, "front")),
     ...role("platform").map((s) => between("platform edge", ["platform", "side", "edge"], s.from.at, s.to.at, "top")),
     ...pairwise("distance of guides", ["guide", "drive", "side", "distance"], guides.map((g) => g.from.at), "top"),
-    ...(scene.joints ?? []).filter((joint) => joint.body === 0).flatMap((joint) => fromAxis("base joint", ["base", "motor", "pivot", "crank"], joint.at, [0, 0, 0])),
+    ...(scene.joints ?? []).filter((joint) => joint.body === 0).flatMap((joint) => fromAxis("base joint", ["base", "motor", "pivot", "crank"], joint.at, [0, 0, 0], leg(joint.name))),
   ].filter((measure) => measure.value > 1e-9);
 }
 
@@ -84,7 +85,11 @@ function affinity(measure, parameter) {
   return measure.words.filter((word) => text.includes(word)).length;
 }
 
-/** Parameters found in the drawing: [{parameter, measure}], and those that were not. */
+/**
+ * Parameters found in the drawing: [{parameter, measure}], and those that were not.
+ * Of equal measures the one is taken that fits the description, lies on a leg
+ * without a dimension yet, and is seen best.
+ */
 export function dimensionsOf(scene, parameters) {
   const all = measures(scene);
   const found = [], missing = [];
@@ -93,7 +98,8 @@ export function dimensionsOf(scene, parameters) {
     const value = parameter.value * scale;
     const angular = ["deg", "rad", "angle"].includes(parameter.unit);
     const fits = scale ? all.filter((m) => m.angular === angular && Math.abs(m.value - value) <= PRECISION * Math.max(value, angular ? 1 : 0)) : [];
-    fits.sort((a, b) => affinity(b, parameter) - affinity(a, parameter));
+    const used = (measure) => found.filter((f) => f.measure.source === measure.source).length;
+    fits.sort((a, b) => affinity(b, parameter) - affinity(a, parameter) || used(a) - used(b) || shownShare(b, viewOf(b)) - shownShare(a, viewOf(a)));
     if (fits.length && affinity(fits[0], parameter) > 0) found.push({ parameter, measure: fits[0] });
     else missing.push(parameter);
   }

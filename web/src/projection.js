@@ -23,6 +23,18 @@ export function sheetBounds(scene, view, posture = homePosture(scene)) {
   return { left: Math.min(...u), right: Math.max(...u), low: Math.min(...v), high: Math.max(...v) };
 }
 
+/** Share of a measure's length that a view shows, 0 to 1. */
+export function shownShare({ a, b }, view) {
+  const [p, q] = [a, b].map(VIEWS[view].project);
+  return Math.hypot(p[0] - q[0], p[1] - q[1]) / Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+/** The view in which a measure is drawn: its own, or the one that shortens it less. */
+export function viewOf(measure) {
+  if (measure.view !== "longest") return measure.view;
+  return shownShare(measure, "front") >= 0.98 * shownShare(measure, "top") ? "front" : "top";
+}
+
 /** Lines and joint marks of a scene; `place` maps sheet metres to pixels. */
 export function sketch(scene, view, place, { posture = homePosture(scene), joints = true, weight = 1 } = {}) {
   const at = (p) => place(VIEWS[view].project(p));

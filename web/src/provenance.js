@@ -8,7 +8,7 @@ function value(key, content) {
   if (key === "seconds") return `${number(content, 3)}\u00a0s`;
   if (key === "started") return String(content).replace("T", " ").replace("Z", " UTC");
   if (key === "command") return el("code", {}, String(content));
-  return typeof content === "number" ? String(content) : String(content);
+  return String(content);
 }
 
 export function provenance(run) {

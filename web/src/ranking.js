@@ -21,7 +21,7 @@ function row(entry, selection, columns, bestScore) {
     el("td", {}, el("b", {}, entry.title || stored?.title || entry.layout), el("br"),
       el("small", {}, [entry.known_as, entry.layout].filter(Boolean).join(" · "))),
     el("td", {}, number(entry.score, 3), bar(entry.score / bestScore, "score"),
-      typeof entry.initial_score === "number" && el("small", {}, `before tuning ${number(entry.initial_score, 3)}`)),
+      typeof entry.initial_score === "number" && el("small", {}, "before\u00a0", number(entry.initial_score, 3))),
     columns.map(({ index, share }) => el("td", {}, indexValue(index, entry.objectives?.[index.key]), bar(share(entry.objectives?.[index.key])))));
   if (stored) {
     const choose = () => selection.select(entry.layout);
@@ -54,7 +54,7 @@ export function ranking(run, selection) {
         indices.map((index) => el("th", { title: index.about }, index.label, el("small", {}, index.better === "lower" ? "lower is better" : "higher is better"))))),
       el("tbody", {}, lines))),
     more || null,
-    el("p", { class: "note" }, "In every column the longest bar is the best value. Click a row to see that layout in all parts below."),
+    el("p", { class: "note" }, "In every column the longest bar is the best value.", el("span", { class: "screen-only" }, " Click a row to see that layout in all parts below.")),
     indices.some((index) => index.about) && el("dl", { class: "words" }, indices.filter((index) => index.about)
       .flatMap((index) => [el("dt", {}, index.label), el("dd", {}, index.about)])),
   ];

@@ -8,13 +8,19 @@ export class Selection {
   constructor(run) {
     this.run = run;
     this.listeners = [];
+    window.addEventListener("hashchange", () => this.select(this.asked()));
     this.entries = new Map();
     for (const group of run.rejected ?? []) {
       for (const example of group.examples ?? []) this.entries.set(example.id, { ...example, rejected: group.reason });
     }
     for (const layout of run.layouts ?? []) this.entries.set(layout.id, layout);
     const first = (run.ranking ?? []).find((row) => this.entries.has(row.layout))?.layout;
-    this.current = this.entries.get(first) ?? this.entries.values().next().value ?? null;
+    this.current = this.entries.get(this.asked()) ?? this.entries.get(first) ?? this.entries.values().next().value ?? null;
+  }
+
+  /** The layout named in the page's address, report.html#layout-<id>. */
+  asked() {
+    return location.hash.startsWith("#layout-") ? location.hash.slice("#layout-".length) : null;
   }
 
   select(id) {

@@ -1,5 +1,6 @@
 // The scheme with its controls: a slider per drive, views, workspace overlay and the
 // motion of a freedom that is left.
+import { onResize } from "./charts.js";
 import { el } from "./dom.js";
 import { driveValue, millimetres } from "./format.js";
 import { legend } from "./legend.js";
@@ -30,7 +31,8 @@ export class SchemePanel {
       this.canvas.replaceWith(this.flat);
       return;
     }
-    new ResizeObserver(() => this.resize()).observe(this.stage);
+    onResize(this.stage, () => this.resize());
+    queueMicrotask(() => this.resize());
     window.addEventListener("beforeprint", () => this.picture());
   }
 
@@ -58,7 +60,7 @@ export class SchemePanel {
     this.values = (entry.scene.drives ?? []).map(() => 0);
     this.view?.show(entry.scene, entry.workspace);
     this.side.replaceChildren(...[this.viewButtons(), this.modePanel(), this.drivePanel()].filter(Boolean));
-    this.legend.replaceChildren(legend(entry));
+    this.legend.replaceChildren(legend(entry, false));
     this.apply(homePosture(entry.scene));
     this.picture();
   }
@@ -67,10 +69,13 @@ export class SchemePanel {
     if (!this.view) return null;
     const button = (words, act) => el("button", { onclick: act }, words);
     const overlay = this.entry.workspace?.slices?.length && el("label", { class: "tick" },
-      el("input", { type: "checkbox", onchange: (event) => this.view.setOverlay(event.target.checked) }), " workspace in the picture");
+      el("input", { type: "checkbox", onchange: ({ target }) => {
+        this.view.setOverlay(target.checked);
+        this.legend.replaceChildren(legend(this.entry, target.checked));
+      } }), " workspace in the picture");
     return el("div", {}, el("div", { class: "buttons" },
       button("3D", () => this.view.look("home")), button("Front", () => this.view.look("front")), button("Side", () => this.view.look("side")),
-      button("Top", () => this.view.look("top")), button("＋", () => this.view.zoom(0.85)), button("－", () => this.view.zoom(1.18))), overlay || null);
+      button("Top", () => this.view.look("top")), button("+", () => this.view.zoom(0.85)), button("−", () => this.view.zoom(1.18))), overlay || null);
   }
 
   drivePanel() {

@@ -70,12 +70,10 @@ export class Scheme3d {
 
   addJoints() {
     const { size } = this.extent;
-    let drive = 0;
     for (const joint of this.scene.joints ?? []) {
       this.bodies[joint.body].add(jointShape(joint, size));
-      if (!joint.driven) continue;
-      drive += 1;
-      this.bodies[joint.body].add(word(String(drive), joint.at.map((v, k) => v + [0.03, 0.03, 0.045][k] * size), size * 0.075, "#00694d"));
+      const drive = (this.scene.drives ?? []).findIndex((d) => d.name === joint.name) + 1;
+      if (drive > 0) this.bodies[joint.body].add(word(String(drive), joint.at.map((v, k) => v + [0.03, 0.03, 0.045][k] * size), size * 0.075, "#00694d"));
     }
   }
 
@@ -87,13 +85,13 @@ export class Scheme3d {
     const grid = new GridHelper(side, Math.round(side / step), "#c3ccd4", "#e3e8ec");
     grid.rotation.x = Math.PI / 2;
     grid.position.set(Math.round(centre[0] / step) * step, Math.round(centre[1] / step) * step, lowest[2] - 0.02 * size);
-    this.gridStep = step;
-    const corner = [grid.position.x - side / 2, grid.position.y - side / 2, grid.position.z];
-    const reach = 0.12 * size;
+    const origin = [0, 0, grid.position.z + 1e-3 * size];  // below the origin of the base frame
+    const reach = 0.14 * size;
     this.machine.add(grid);
     ["x", "y", "z"].forEach((name, k) => {
-      const tip = corner.map((v, i) => v + (i === k ? reach : 0));
-      this.machine.add(lines([corner, tip], "#1d2733"), word(name, tip, size * 0.06, "#1d2733"));
+      const tip = origin.map((v, i) => v + (i === k ? reach : 0));
+      const beyond = origin.map((v, i) => v + (i === k ? 1.15 * reach : 0));
+      this.machine.add(lines([origin, tip], "#1d2733"), word(name, beyond, size * 0.075, "#1d2733"));
     });
   }
 
@@ -118,7 +116,7 @@ export class Scheme3d {
     this.controls.target.set(...centre);
     this.camera.near = size / 100;
     this.camera.far = size * 20;
-    this.camera.position.set(...centre).addScaledVector(direction, size * 2.05 * Math.max(1, 1.25 / this.camera.aspect));
+    this.camera.position.set(...centre).addScaledVector(direction, size * 1.75 * Math.max(1, 1.25 / this.camera.aspect));
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.render();

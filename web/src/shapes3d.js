@@ -2,7 +2,7 @@
 // its own colour.
 import {
   BoxGeometry, BufferGeometry, CanvasTexture, ConeGeometry, CylinderGeometry, DoubleSide, Float32BufferAttribute, Group, LineBasicMaterial,
-  LineSegments, Mesh, MeshLambertMaterial, Quaternion, SphereGeometry, Sprite, SpriteMaterial, Vector3,
+  LineSegments, Mesh, MeshLambertMaterial, Quaternion, SphereGeometry, SRGBColorSpace, Sprite, SpriteMaterial, TorusGeometry, Vector3,
 } from "three";
 
 import { BODY, JOINT } from "./colours.js";
@@ -23,6 +23,8 @@ const ROUND = new CylinderGeometry(1, 1, 1, 14);
 const BALL = new SphereGeometry(1, 20, 14);
 const CUBE = new BoxGeometry(1, 1, 1);
 const TIP = new ConeGeometry(1, 1, 16);
+const TURN = 1.5 * Math.PI;
+const RING = new TorusGeometry(1, 0.1, 8, 32, TURN);
 
 /** Puts a y-aligned shape of length 1 between two points. */
 export function stretch(mesh, a, b, width) {
@@ -53,8 +55,8 @@ function pin(axis, length, radius, colour) {
   return mesh;
 }
 
-/** An arrow both ways along a driven axis. */
-function drivenArrow(axis, size) {
+/** An arrow both ways along a driven slide. */
+function slideArrow(axis, size) {
   const group = new Group();
   group.add(pin(axis, size * 0.09, size * 0.0035, JOINT.driven));
   for (const sign of [1, -1]) {
@@ -63,6 +65,21 @@ function drivenArrow(axis, size) {
     stretch(tip, at(0.042), at(0.06), size * 0.008);
     group.add(tip);
   }
+  group.position.copy(sideways(axis, size * 0.024));
+  return group;
+}
+
+/** An arrow around a driven hinge: most of a ring, with a tip at its end. */
+function turnArrow(axis, size) {
+  const group = new Group();
+  const ring = new Mesh(RING, material(JOINT.driven));
+  ring.scale.setScalar(size * 0.032);
+  const tip = new Mesh(TIP, material(JOINT.driven));
+  tip.scale.set(size * 0.008, size * 0.018, size * 0.008);
+  tip.rotation.z = TURN;
+  tip.position.set(Math.cos(TURN), Math.sin(TURN), 0).multiplyScalar(size * 0.032);
+  group.add(ring, tip);
+  group.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(...axis));
   return group;
 }
 
@@ -84,11 +101,7 @@ export function jointShape(joint, size) {
   } else if (joint.type !== "weld") {
     group.add(pin(axes[0], size * 0.04, size * 0.0085, joint.driven ? JOINT.driven : colour));
   }
-  if (joint.driven) {
-    const arrow = drivenArrow(axes[0], size);
-    if (joint.type === "prismatic") arrow.position.copy(sideways(axes[0], size * 0.024));
-    group.add(arrow);
-  }
+  if (joint.driven) group.add(joint.type === "prismatic" ? slideArrow(axes[0], size) : turnArrow(axes[0], size));
   group.position.set(...joint.at);
   return group;
 }
@@ -130,7 +143,9 @@ export function word(text, at, size, colour) {
   pen.strokeText(text, 64, 32);
   pen.fillStyle = colour;
   pen.fillText(text, 64, 32);
-  const sprite = new Sprite(new SpriteMaterial({ map: new CanvasTexture(canvas), depthTest: false }));
+  const texture = new CanvasTexture(canvas);
+  texture.colorSpace = SRGBColorSpace;
+  const sprite = new Sprite(new SpriteMaterial({ map: texture, depthTest: false }));
   sprite.position.set(...at);
   sprite.scale.set(size, size / 2, 1);
   return sprite;
@@ -145,7 +160,7 @@ export function place(group, [w, x, y, z, tx, ty, tz]) {
 /** Frees what a removed object holds on the graphics card, except what is shared. */
 export function release(object) {
   object.traverse((node) => {
-    const shared = [ROUND, BALL, CUBE, TIP].includes(node.geometry);
+    const shared = [ROUND, BALL, CUBE, TIP, RING].includes(node.geometry);
     if (node.geometry && !shared && !node.isSprite) node.geometry.dispose();
     if (node.isSprite || node.isLineSegments) {
       node.material.map?.dispose();

@@ -16,7 +16,7 @@ function bumpOption(run, selection, current, width) {
     height: Math.min(640, 130 + 30 * lowest),
     grid: { left: 52, right: narrow ? 96 : 150, top: 12, bottom: narrow ? 110 : 56 },
     tooltip: { trigger: "item", confine: true, formatter: (item) => `${item.seriesName}<br>${item.name}: rank ${item.value}` },
-    xAxis: { ...axis(""), type: "category", boundaryGap: true, data: schemes.map((s) => s.label), axisLabel: { ...axis("").axisLabel, interval: 0, rotate: narrow ? 60 : 0, width: narrow ? 100 : Math.max(60, (width - 220) / schemes.length - 8), overflow: narrow ? "truncate" : "break" } },
+    xAxis: { ...axis(""), type: "category", boundaryGap: true, offset: 14, axisLine: { show: false }, axisTick: { show: false }, data: schemes.map((s) => s.label), axisLabel: { ...axis("").axisLabel, interval: 0, rotate: narrow ? 60 : 0, width: narrow ? 100 : Math.max(60, (width - 220) / schemes.length - 8), overflow: narrow ? "truncate" : "break" } },
     yAxis: { ...axis("rank (1 is best)"), type: "value", inverse: true, min: 1, max: lowest, interval: Math.ceil(lowest / 12), nameGap: 30, axisLine: { show: false } },
     series: ids.map((id, index) => {
       const chosen = id === current?.id, named = index < NAMED || chosen;

@@ -14,7 +14,7 @@ function topOf(run) {
 function facts(w) {
   const c = w.conditioning ?? {}, cylinder = w.inscribed_cylinder, rotation = w.rotation_range;
   return [
-    ["Volume", w.volume !== undefined && `${litres(w.volume)}${w.volume_bounds ? ` (certainly between ${w.volume_bounds.map((v) => number(v * 1e3)).join(" and ")})` : ""}`],
+    ["Volume", w.volume !== undefined && `${litres(w.volume)}${w.volume_bounds ? ` (bounds ${w.volume_bounds.map((v) => number(v * 1e3)).join(" and ")})` : ""}`],
     ["Largest cylinder inside", cylinder?.diameter && `Ø ${millimetres(cylinder.diameter)} × ${millimetres(cylinder.height)}, centre at ${point(cylinder.center)}`],
     ["Largest box inside", w.inscribed_box?.size && `${box(w.inscribed_box.size)}, centre at ${point(w.inscribed_box.center)}`],
     ["Required zone", w.zone?.size && `${box(w.zone.size)}, centre at ${point(w.zone.center ?? [0, 0, 0])}`],
@@ -56,7 +56,7 @@ function limits(w) {
   return rows.length ? el("table", { class: "limits" }, el("tbody", {}, rows.map(([label, share]) => el("tr", {}, el("td", {}, label), el("td", { class: "num" }, percent(share)), el("td", { class: "wide" }, bar(share)))))) : null;
 }
 
-const sliceName = (slice) => (slice.plane === "xz" ? `upright, y = ${millimetres(slice.at, 3)}` : `z = ${millimetres(slice.at, 3)}`);
+const sliceName = (slice) => (slice.plane === "xz" ? `upright, y ${millimetres(slice.at, 3)}` : `z = ${millimetres(slice.at, 3)}`);
 
 /** Draws the workspace of the selected layout; keeps its two charts for the next one. */
 export class WorkspacePanel {
@@ -86,7 +86,7 @@ export class WorkspacePanel {
     return el("div", {},
       el("div", { class: "slices", role: "group", "aria-label": "slices" }, this.buttons),
       figure([el("b", { class: "slice-title" }), this.heat, colourScale(this.top)],
-        "Conditioning 1/κ in a slice of the workspace: 1 means equal speed and accuracy in all directions, 0 a singular posture. Dashed blue: largest cylinder inside; dotted orange: required zone. All maps in this report use the same colours."));
+        "Conditioning 1/κ in a slice of the workspace: 1 means equal speed and accuracy in all directions, 0 a singular posture. Dashed line: largest cylinder inside; dotted line: required zone. All maps in this report use the same colours."));
   }
 
   choose(index) {
