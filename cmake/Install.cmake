@@ -10,7 +10,6 @@ install(FILES README.md LICENSE CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_IN
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/Polyglide)
-install(TARGETS polyglide_options EXPORT polyglide)
 install(EXPORT polyglide NAMESPACE polyglide:: FILE PolyglideTargets.cmake DESTINATION ${package}
         COMPONENT dev)
 configure_package_config_file(cmake/PolyglideConfig.cmake.in
@@ -25,7 +24,9 @@ install(FILES ${PROJECT_BINARY_DIR}/PolyglideConfig.cmake
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME polyglide)
 set(CPACK_PACKAGE_CONTACT "polyglide developers")
-set(CPACK_PACKAGE_DESCRIPTION_FILE ${PROJECT_SOURCE_DIR}/cmake/package-description.txt)
+set(CPACK_PACKAGE_DESCRIPTION
+    "Enumerates layouts of parallel kinematic machines, rejects those that are kinematically
+uncertain and says why, tunes the dimensions of the rest and writes a ranked design report.")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
