@@ -56,7 +56,7 @@ function limits(w) {
   return rows.length ? el("table", { class: "limits" }, el("tbody", {}, rows.map(([label, share]) => el("tr", {}, el("td", {}, label), el("td", { class: "num" }, percent(share)), el("td", { class: "wide" }, bar(share)))))) : null;
 }
 
-const sliceName = (slice) => (slice.plane === "xz" ? `upright, y ${millimetres(slice.at, 3)}` : `z = ${millimetres(slice.at, 3)}`);
+const sliceName = (slice) => (slice.plane === "xz" ? `y = ${millimetres(slice.at, 3)}` : `z = ${millimetres(slice.at, 3)}`);
 
 /** Draws the workspace of the selected layout; keeps its two charts for the next one. */
 export class WorkspacePanel {
