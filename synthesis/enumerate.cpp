@@ -22,7 +22,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kVerdicts = "verdict";  // kind in the store
 constexpr std::uint64_t kMostRaw = 5'000'000;
-constexpr std::uint64_t kReportEvery = 64;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -42,8 +41,8 @@ class Workers {
     const auto finished = [&] {
       if (!options_.progress) return;
       const std::lock_guard lock(mutex);
-      if (++progress.done % kReportEvery == 0 || progress.done == count)
-        options_.progress(progress);
+      ++progress.done;
+      options_.progress(progress);
     };
     arena_.execute([&] {
       tbb::parallel_for(std::uint64_t{0}, count, [&](std::uint64_t i) {
