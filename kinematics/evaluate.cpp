@@ -57,6 +57,12 @@ void in_blocks(std::size_t size, std::size_t block, const Work& work) {
 Evaluator::Evaluator(const Machine& machine, const std::vector<std::string>& ignored)
     : machine_(machine), ignored_(ignored) {
   if (machine_.legs && machine_.task.pure) {
+    for (Leg& leg : machine_.legs->legs) {
+      const int joint = machine_.model.freedoms[machine_.model.drives[leg.drive]].joint;
+      const std::string stroke = "stroke " + machine_.model.mechanism.joints[joint].name;
+      if (is_ignored(stroke + " min", ignored_)) leg.stroke.min = Range{}.min;
+      if (is_ignored(stroke + " max", ignored_)) leg.stroke.max = Range{}.max;
+    }
     kernel_ = std::make_shared<const LegKernel>(machine_, ignored_);
     limit_names_ = kernel_->limit_names();
   } else {

@@ -44,6 +44,7 @@ class Evaluator {
   /// Drives at one reachable pose; limit as above.
   [[nodiscard]] int inverse(const Pose& pose, Eigen::VectorXd& drives) const;
 
+  /// The machine, with the strokes of its legs unlimited where they are ignored.
   [[nodiscard]] const Machine& machine() const { return machine_; }
 
   /// Whether poses are answered in closed form, so millions of them are no matter.

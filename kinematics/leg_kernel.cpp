@@ -39,9 +39,6 @@ void LegKernel::add_leg(const Leg& leg, bool primary, const std::vector<std::str
     const std::string stroke = "stroke " + mechanism.joints[joint].name;
     row.stroke_min = add_name(stroke + " min");
     row.stroke_max = add_name(stroke + " max");
-    const Range unlimited;
-    if (is_ignored(limit_names_[row.stroke_min], ignored)) row.leg.stroke.min = unlimited.min;
-    if (is_ignored(limit_names_[row.stroke_max], ignored)) row.leg.stroke.max = unlimited.max;
   }
   add_cone(row, leg.base_joint, false, ignored);
   add_cone(row, leg.platform_joint, true, ignored);

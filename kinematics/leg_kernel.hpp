@@ -20,7 +20,8 @@ class LegKernel {
  public:
   static constexpr int kBlock = 256;  ///< most poses per call
 
-  /// @param machine with legs and a pure task space.
+  /// @param machine with legs and a pure task space; strokes that do not count are
+  ///        unlimited in its legs already.
   LegKernel(const Machine& machine, const std::vector<std::string>& ignored);
 
   /// Leg by leg "reach …", "stroke … min", "stroke … max", "cone …"; then

@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "kinematics/evaluate.hpp"
+#include "kinematics/inscribed.hpp"
+#include "kinematics/rotation_range.hpp"
 
 namespace polyglide {
 
@@ -16,17 +17,9 @@ struct WorkspaceOptions {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< orientation of the platform
   double accuracy = 5e-4;            ///< relative uncertainty of the volume aimed at
   int slices = 9;                    ///< horizontal slices kept for maps
+  bool volume_only = false;          ///< skip shapes, slices and rotation range: for tuning
   std::optional<Vector3> box;        ///< also: does a box of this size fit, and where [m]
   std::optional<std::pair<double, double>> cylinder;  ///< also: does diameter × height fit [m]
-};
-
-struct Cylinder {
-  double diameter = 0, height = 0;  ///< [m], axis vertical
-  Vector3 center = Vector3::Zero();
-};
-struct Box {
-  Vector3 size = Vector3::Zero();   ///< [m], edges along base x, y, z
-  Vector3 center = Vector3::Zero();
 };
 
 /// Horizontal slice with 1/κ (NaN = outside).
@@ -49,11 +42,7 @@ struct Workspace {
   double characteristic_length = 0;
   std::map<std::string, double> limits_hit;  ///< share of the boundary each limit makes
   std::vector<Slice> slices;
-  struct RotationRange {
-    char axis = 'A';
-    Vector3 at = Vector3::Zero();
-    double min = 0, max = 0;  ///< [rad] about home orientation, without leaving the limits or crossing a singularity
-  };
+  using RotationRange = polyglide::RotationRange;
   std::optional<RotationRange> rotation_range;  ///< widest found, for 3T1R machines
   std::optional<Box> asked_box;            ///< where the asked box fits
   std::optional<Cylinder> asked_cylinder;  ///< where the asked cylinder fits

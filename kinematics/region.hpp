@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "kinematics/evaluate.hpp"
+
+namespace polyglide {
+
+/// Points asked together: tool displacements from home [m].
+struct Points {
+  std::vector<double> x, y, z;
+  void add(const Vector3& point) {
+    x.push_back(point.x());
+    y.push_back(point.y());
+    z.push_back(point.z());
+  }
+  [[nodiscard]] std::size_t size() const { return x.size(); }
+  [[nodiscard]] Vector3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
+/// Asks an evaluator about tool places at one orientation, and counts. A place
+/// belongs to the workspace when no limit stops it and no singular surface
+/// separates it from home: for square J the sign of det J is home's, and 1/κ > 1e-6.
+class Probe {
+ public:
+  Probe(const Evaluator& evaluator, const Eigen::Quaterniond& rotation);
+
+  struct Answers {
+    std::vector<int> limit;  ///< -1 inside, else index into names()
+    std::vector<double> inverse_condition;
+    std::vector<signed char> orientation;
+    [[nodiscard]] bool inside(std::size_t i) const { return limit[i] < 0; }
+  };
+  [[nodiscard]] Answers ask(const Points& points) const;
+  [[nodiscard]] bool all_inside(const Points& points) const;
+
+  /// Limit names of the evaluator, then "singularity" and "search box".
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  [[nodiscard]] int singularity() const { return static_cast<int>(names_.size()) - 2; }
+  [[nodiscard]] int search_box() const { return static_cast<int>(names_.size()) - 1; }
+
+  /// Sign of det J that counts; 0 = either, as when home itself is singular.
+  [[nodiscard]] int side() const { return side_; }
+  void set_side(int side) { side_ = side; }
+
+  [[nodiscard]] const Evaluator& evaluator() const { return evaluator_; }
+  [[nodiscard]] const Eigen::Quaterniond& rotation() const { return rotation_; }
+  [[nodiscard]] std::size_t poses() const { return poses_; }
+  /// Which of x, y, z the machine can command.
+  [[nodiscard]] const std::array<bool, 3>& active() const { return active_; }
+  [[nodiscard]] int dimensions() const { return active_[0] + active_[1] + active_[2]; }
+
+ private:
+  const Evaluator& evaluator_;
+  Eigen::Quaterniond rotation_;
+  std::vector<std::string> names_;
+  std::array<bool, 3> active_{};
+  int side_ = 0;
+  mutable std::size_t poses_ = 0;
+};
+
+/// Axis-parallel box of tool displacements.
+struct Bounds {
+  Vector3 lower = Vector3::Zero(), upper = Vector3::Zero();
+};
+
+/// A box that holds every place the tool can reach: for leg machines from
+/// strokes and rod lengths, else by walking from home along the axes.
+[[nodiscard]] Bounds search_bounds(const Probe& probe);
+
+/// Cubic grid over a box; one node in directions the machine does not command.
+struct NodeGrid {
+  Vector3 origin = Vector3::Zero();
+  double step = 0;
+  std::array<int, 3> count{1, 1, 1};
+
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(count[0]) * count[1] * count[2];
+  }
+  [[nodiscard]] std::size_t index(int i, int j, int k) const {
+    return static_cast<std::size_t>(i) + static_cast<std::size_t>(count[0]) * (j + static_cast<std::size_t>(count[1]) * k);
+  }
+  [[nodiscard]] Vector3 at(int i, int j, int k) const { return origin + step * Vector3(i, j, k); }
+};
+
+/// The workspace on a grid: the connected part that holds home (the largest part
+/// when home is outside).
+struct Region {
+  NodeGrid grid;
+  std::vector<char> inside;               ///< per node
+  std::vector<int> limit;                 ///< per node; -1 = no limit, though perhaps of another part
+  std::vector<double> inverse_condition;  ///< per node
+  Bounds extent;                          ///< of the nodes inside
+  bool empty = true;
+};
+
+/// Explores a box with about `nodes` nodes; fixes the probe's side when it is open.
+[[nodiscard]] Region explore(Probe& probe, const Bounds& box, int nodes);
+
+/// The same twice: coarsely over the search bounds, then over what was found.
+[[nodiscard]] Region explore(Probe& probe, int nodes);
+
+}  // namespace polyglide

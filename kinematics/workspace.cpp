@@ -1,0 +1,119 @@
+#include "kinematics/workspace.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "kinematics/region_measure.hpp"
+
+namespace polyglide {
+namespace {
+
+/// A cell of the grid counts for a slice when one of its corners is in the region, so
+/// that places of another part are left out.
+bool near_region(const Region& region, const Vector3& point) {
+  const NodeGrid& grid = region.grid;
+  std::array<int, 3> low{};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (grid.count[axis] == 1) continue;
+    low[axis] = static_cast<int>(std::floor((point[axis] - grid.origin[axis]) / grid.step));
+    if (low[axis] < 0 || low[axis] > grid.count[axis] - 2) return false;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    std::array<int, 3> at = low;
+    for (int axis = 0; axis < 3; ++axis)
+      at[axis] = std::min(at[axis] + (corner >> axis & 1), grid.count[axis] - 1);
+    if (region.inside[grid.index(at[0], at[1], at[2])]) return true;
+  }
+  return false;
+}
+
+std::vector<double> spread(double lower, double upper, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) values.push_back(lower + (upper - lower) * (i + 0.5) / count);
+  return values;
+}
+
+std::vector<Slice> make_slices(const Probe& probe, const Region& region, const Bounds& extent, int count) {
+  const int longest = probe.evaluator().closed_form() ? 40 : 11;
+  const Vector3 size = extent.upper - extent.lower;
+  const double step = std::max(size.x(), size.y()) / longest;
+  const auto samples = [step](double length) {
+    return step > 0 ? std::max(1, static_cast<int>(std::lround(length / step))) : 1;
+  };
+  std::vector<Slice> slices;
+  for (double z : spread(extent.lower.z(), extent.upper.z(), size.z() > 0 ? count : 1)) {
+    Slice slice{z, spread(extent.lower.x(), extent.upper.x(), samples(size.x())),
+                spread(extent.lower.y(), extent.upper.y(), samples(size.y())), {}};
+    Points points;
+    for (double y : slice.y)
+      for (double x : slice.x) points.add({x, y, z});
+    const Probe::Answers answers = probe.ask(points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      slice.inverse_condition.push_back(answers.inside(i) && near_region(region, points[i])
+                                            ? answers.inverse_condition[i]
+                                            : std::numeric_limits<double>::quiet_NaN());
+    slices.push_back(std::move(slice));
+  }
+  return slices;
+}
+
+void take_measure(Workspace& result, const Probe& probe, const Region& region, const Measure& measured) {
+  result.global_conditioning = measured.mean;
+  result.worst = measured.worst;
+  result.best = measured.best;
+  if (probe.dimensions() == 3) {
+    result.volume = measured.value;
+    result.volume_lower = measured.lower;
+    result.volume_upper = measured.upper;
+  }
+  const std::array<bool, 3>& active = probe.active();
+  if (!active[0] || !active[1]) return;
+  const double thickness = active[2] ? region.grid.step : 1;
+  for (std::size_t k = 0; k < measured.layers.size(); ++k) {
+    const double z = active[2] ? region.grid.origin.z() + (static_cast<double>(k) + 0.5) * thickness : 0;
+    result.area_by_z.emplace_back(z, measured.layers[k] / thickness);
+  }
+}
+
+}  // namespace
+
+Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Evaluator evaluator(machine, options.ignored);
+  Probe probe(evaluator, options.rotation);
+  const Fineness fineness = fineness_for(options.accuracy, evaluator.closed_form());
+
+  Workspace result;
+  result.characteristic_length = machine.task.characteristic_length;
+  const Region region = explore(probe, fineness.nodes);
+  if (!region.empty) {
+    take_measure(result, probe, region, measure(probe, region, fineness, options.accuracy));
+    const Boundary boundary = find_boundary(probe, region, fineness.bisections);
+    result.limits_hit = boundary.limits;
+    result.lower = boundary.extent.lower;
+    result.upper = boundary.extent.upper;
+    if (!options.volume_only) result.slices = make_slices(probe, region, boundary.extent, options.slices);
+  }
+  if (!region.empty && (!options.volume_only || options.box || options.cylinder)) {
+    const Inscriber inscriber(probe, region);
+    if (!options.volume_only) {
+      result.inscribed_cylinder = inscriber.largest_cylinder();
+      result.inscribed_box = inscriber.largest_box();
+      result.cylinders = inscriber.tallest_cylinders();
+    }
+    if (options.box) result.asked_box = inscriber.place(*options.box);
+    if (options.cylinder)
+      result.asked_cylinder = inscriber.place(options.cylinder->first, options.cylinder->second);
+  }
+  result.poses = probe.poses();
+  if (!region.empty && !options.volume_only && machine.task.translations == 3) {
+    const double degrees = evaluator.closed_form() ? 1 : 5;
+    result.rotation_range =
+        widest_rotation(evaluator, {result.lower, result.upper}, degrees * M_PI / 180, result.poses);
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace polyglide
