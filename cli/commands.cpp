@@ -8,6 +8,7 @@ constexpr Command kCommands[] = {
     {"check", "Say whether the drives hold the platform, and why", run_check},
     {"pose", "Find drives for a pose, or poses for drives", run_pose},
     {"workspace", "Measure where the platform can be, and how well", run_workspace},
+    {"enumerate", "Find every distinct layout of a design space, with verdicts", run_enumerate},
     {"export", "Write a machine in a format for other tools", run_export},
 };
 

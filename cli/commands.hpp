@@ -30,6 +30,7 @@ int run_catalog(CommandLine& line);
 int run_check(CommandLine& line);
 int run_pose(CommandLine& line);
 int run_workspace(CommandLine& line);
+int run_enumerate(CommandLine& line);
 int run_export(CommandLine& line);
 
 }  // namespace polyglide
