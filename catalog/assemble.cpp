@@ -23,7 +23,8 @@ Scope make_scope(const Layout& layout, const ParameterValues& values, Problems& 
         (!std::isfinite(value) || (free && (value < parameter.min || value > parameter.max))))
       problems.add({layout.file, "/parameters/" + parameter.name, fmt::format("{:.12g}", value),
                     fmt::format("this parameter must lie in [{:.12g}, {:.12g}]", parameter.min,
-                                parameter.max), ""});
+                                parameter.max),
+                    ""});
     scope.names.emplace_back(parameter.name, value);
   }
   for (const auto& [name, value] : values) {
@@ -48,9 +49,10 @@ void add_derived(const json& derived, Scope& scope, Problems& problems) {
     scope.names.emplace_back(name, result.value);
   };
   const auto uses_waiting = [&](const auto& entry) {
-    return std::ranges::any_of(names_in(entry.second->template get<std::string>()), [&](auto& name) {
-      return std::ranges::any_of(waiting, [&](auto& other) { return other.first == name; });
-    });
+    return std::ranges::any_of(
+        names_in(entry.second->template get<std::string>()), [&](auto& name) {
+          return std::ranges::any_of(waiting, [&](auto& other) { return other.first == name; });
+        });
   };
   while (!waiting.empty()) {
     const auto next = std::ranges::find_if_not(waiting, uses_waiting);
@@ -116,22 +118,26 @@ void check_connections(const Mechanism& mechanism, const std::vector<JointDraft>
       return draft.joint.bodies[0] == body || draft.joint.bodies[1] == body;
     });
   };
-  for (const auto& [key, body] : {std::pair{"base", mechanism.base}, {"platform", mechanism.platform}}) {
+  for (const auto& [key, body] :
+       {std::pair{"base", mechanism.base}, {"platform", mechanism.platform}}) {
     if (used(body)) continue;
     std::vector<std::string> others = mechanism.bodies;
     std::erase(others, mechanism.bodies[body]);
     const json& place = member(document, key);
     const std::string rule = fmt::format("the {} \"{}\" must be a body that some joint joins", key,
                                          mechanism.bodies[body]);
-    if (place.is_null()) problems.add_missing(document, rule);
-    else problems.add(place, rule, did_you_mean(mechanism.bodies[body], others));
+    if (place.is_null())
+      problems.add_missing(document, rule);
+    else
+      problems.add(place, rule, did_you_mean(mechanism.bodies[body], others));
     return;  // then nothing else need be connected, either
   }
   for (const JointDraft& draft : drafts)
     if (!reached[draft.joint.bodies[0]])
-      problems.add(*draft.origin, fmt::format("the bodies \"{}\" and \"{}\" are not connected to "
-                                              "the base \"{}\"", draft.bodies[0], draft.bodies[1],
-                                              mechanism.bodies[mechanism.base]));
+      problems.add(*draft.origin,
+                   fmt::format("the bodies \"{}\" and \"{}\" are not connected to "
+                               "the base \"{}\"",
+                               draft.bodies[0], draft.bodies[1], mechanism.bodies[mechanism.base]));
 }
 
 void connect(Mechanism& mechanism, std::vector<JointDraft>& drafts,
@@ -182,11 +188,14 @@ std::vector<Vector3> rod_directions(const Joint& joint, const Mechanism& mechani
       const Joint& other = draft.joint;
       if (&other == &joint || (other.bodies[0] != body && other.bodies[1] != body)) continue;
       const Vector3 way = other.at - joint.at;
-      if (other.type == JointType::prismatic) slides.push_back(other.axes[0]);
-      else if (way.norm() < 1e-9) continue;
+      if (other.type == JointType::prismatic)
+        slides.push_back(other.axes[0]);
+      else if (way.norm() < 1e-9)
+        continue;
       else if (other.type == JointType::spherical || other.type == JointType::universal)
         rods.push_back(way.normalized());
-      else others.push_back(way.normalized());
+      else
+        others.push_back(way.normalized());
     }
   }
   return !rods.empty() ? rods : !others.empty() ? others : slides;
@@ -196,10 +205,12 @@ void point_cones(const Mechanism& mechanism, std::vector<JointDraft>& drafts, Pr
   for (JointDraft& draft : drafts) {
     if (!draft.joint.cone || !draft.joint.cone_axis.isZero()) continue;
     const auto directions = rod_directions(draft.joint, mechanism, drafts);
-    if (directions.size() == 1) draft.joint.cone_axis = directions[0];
+    if (directions.size() == 1)
+      draft.joint.cone_axis = directions[0];
     else
       problems.add(*draft.origin, fmt::format("the direction of the rod at joint {} is not plain: "
-                                              "give \"cone_axis\"", draft.joint.name));
+                                              "give \"cone_axis\"",
+                                              draft.joint.name));
   }
 }
 
@@ -230,7 +241,8 @@ HalfSpaceLimit read_limit(const json& value, const Reader& reader, const Mechani
     const Vector3 written(reader.number(normal[0]), reader.number(normal[1]),
                           reader.number(normal[2]));
     const double norm = written.norm();
-    if (norm < 1e-12) reader.problems().add(normal, "a normal must have a length greater than zero");
+    if (norm < 1e-12)
+      reader.problems().add(normal, "a normal must have a length greater than zero");
     // The rule normal · point <= offset stays the same when both are scaled.
     const Vector3 unit = unit_vector(written);
     const double scale = unit == written ? 1 : norm;

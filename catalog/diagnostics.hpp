@@ -35,6 +35,7 @@ class InputError : public std::runtime_error {
 
 /// The word of `words` nearest to `word` by edit distance, or "" when none is
 /// near enough to be what was meant (more than a third of the letters differ).
-[[nodiscard]] std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
+[[nodiscard]] std::string nearest_word(std::string_view word,
+                                       const std::vector<std::string>& words);
 
 }  // namespace polyglide

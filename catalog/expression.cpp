@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t kLongest = 500;
 constexpr std::size_t kMostCompiled = 2048;  ///< per thread; then it starts anew
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::array kReserved = {"sin",  "cos",   "tan",  "asin", "acos", "atan",
-                                  "atan2", "sqrt", "abs",  "min",  "max",  "pi"};
+constexpr std::array kReserved = {"sin",   "cos",  "tan", "asin", "acos", "atan",
+                                  "atan2", "sqrt", "abs", "min",  "max",  "pi"};
 
 bool starts_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool in_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
@@ -53,26 +53,44 @@ mu::Parser bare_parser(bool degrees) {
   parser.ClearConst();
   parser.DefineConst("pi", std::numbers::pi);
   if (degrees) {
-    parser.DefineFun("sin", +[](double x) { return std::sin(x * kDegree); });
-    parser.DefineFun("cos", +[](double x) { return std::cos(x * kDegree); });
-    parser.DefineFun("tan", +[](double x) { return std::tan(x * kDegree); });
-    parser.DefineFun("asin", +[](double x) { return std::asin(x) / kDegree; });
-    parser.DefineFun("acos", +[](double x) { return std::acos(x) / kDegree; });
-    parser.DefineFun("atan", +[](double x) { return std::atan(x) / kDegree; });
-    parser.DefineFun("atan2", +[](double y, double x) { return std::atan2(y, x) / kDegree; });
+    parser.DefineFun(
+        "sin", +[](double x) { return std::sin(x * kDegree); });
+    parser.DefineFun(
+        "cos", +[](double x) { return std::cos(x * kDegree); });
+    parser.DefineFun(
+        "tan", +[](double x) { return std::tan(x * kDegree); });
+    parser.DefineFun(
+        "asin", +[](double x) { return std::asin(x) / kDegree; });
+    parser.DefineFun(
+        "acos", +[](double x) { return std::acos(x) / kDegree; });
+    parser.DefineFun(
+        "atan", +[](double x) { return std::atan(x) / kDegree; });
+    parser.DefineFun(
+        "atan2", +[](double y, double x) { return std::atan2(y, x) / kDegree; });
   } else {
-    parser.DefineFun("sin", +[](double x) { return std::sin(x); });
-    parser.DefineFun("cos", +[](double x) { return std::cos(x); });
-    parser.DefineFun("tan", +[](double x) { return std::tan(x); });
-    parser.DefineFun("asin", +[](double x) { return std::asin(x); });
-    parser.DefineFun("acos", +[](double x) { return std::acos(x); });
-    parser.DefineFun("atan", +[](double x) { return std::atan(x); });
-    parser.DefineFun("atan2", +[](double y, double x) { return std::atan2(y, x); });
+    parser.DefineFun(
+        "sin", +[](double x) { return std::sin(x); });
+    parser.DefineFun(
+        "cos", +[](double x) { return std::cos(x); });
+    parser.DefineFun(
+        "tan", +[](double x) { return std::tan(x); });
+    parser.DefineFun(
+        "asin", +[](double x) { return std::asin(x); });
+    parser.DefineFun(
+        "acos", +[](double x) { return std::acos(x); });
+    parser.DefineFun(
+        "atan", +[](double x) { return std::atan(x); });
+    parser.DefineFun(
+        "atan2", +[](double y, double x) { return std::atan2(y, x); });
   }
-  parser.DefineFun("sqrt", +[](double x) { return std::sqrt(x); });
-  parser.DefineFun("abs", +[](double x) { return std::abs(x); });
-  parser.DefineFun("min", +[](double x, double y) { return std::min(x, y); });
-  parser.DefineFun("max", +[](double x, double y) { return std::max(x, y); });
+  parser.DefineFun(
+      "sqrt", +[](double x) { return std::sqrt(x); });
+  parser.DefineFun(
+      "abs", +[](double x) { return std::abs(x); });
+  parser.DefineFun(
+      "min", +[](double x, double y) { return std::min(x, y); });
+  parser.DefineFun(
+      "max", +[](double x, double y) { return std::max(x, y); });
   return parser;
 }
 
@@ -85,8 +103,8 @@ struct Compiled {
 
 std::unique_ptr<Compiled> compile_expression(const std::string& text, bool degrees) {
   static thread_local const mu::Parser kDegrees = bare_parser(true), kRadians = bare_parser(false);
-  auto compiled = std::make_unique<Compiled>(
-      Compiled{degrees ? kDegrees : kRadians, names_in(text), {}});
+  auto compiled =
+      std::make_unique<Compiled>(Compiled{degrees ? kDegrees : kRadians, names_in(text), {}});
   std::ranges::sort(compiled->names);
   const auto repeated = std::ranges::unique(compiled->names);
   compiled->names.erase(repeated.begin(), repeated.end());
@@ -120,8 +138,10 @@ Evaluation check_text(const std::string& text, const Scope& scope) {
   const auto odd = std::ranges::find_if(
       text, [](char c) { return !in_name(c) && kPunctuation.find(c) == std::string_view::npos; });
   if (odd != text.end())
-    return failed(fmt::format("an expression has numbers, names and + - * / ^ ( ) only; "
-                              "character {} is not allowed", odd - text.begin() + 1));
+    return failed(
+        fmt::format("an expression has numbers, names and + - * / ^ ( ) only; "
+                    "character {} is not allowed",
+                    odd - text.begin() + 1));
   for (const std::string& name : names_in(text)) {
     if (scope.find(name) != nullptr) continue;
     std::vector<std::string> known(kReserved.begin(), kReserved.end());

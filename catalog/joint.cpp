@@ -1,6 +1,6 @@
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -54,7 +54,8 @@ void read_drive(const json& value, const Reader& reader, Joint& joint) {
     joint.driven = {0};
     if (count != 1)
       reader.problems().add(drive, fmt::format("a {} joint has {} freedoms: list the driven ones, "
-                                               "for example [0]", to_string(joint.type), count));
+                                               "for example [0]",
+                                               to_string(joint.type), count));
   }
   if (!drive.is_array()) return;
   for (const json& index : drive) {
@@ -77,8 +78,9 @@ void read_range(const json& value, const Reader& reader, Joint& joint) {
   if (!range.is_array()) return;
   const int count = freedoms(joint.type);
   if (joint.type == JointType::spherical || joint.type == JointType::weld) {
-    reader.problems().add(range, "a " + to_string(joint.type) + " joint has no joint coordinate"
-                          " to limit; a spherical joint is limited by \"cone\"");
+    reader.problems().add(range, "a " + to_string(joint.type) +
+                                     " joint has no joint coordinate"
+                                     " to limit; a spherical joint is limited by \"cone\"");
     return;
   }
   const auto unit = [&](int i) {
@@ -90,10 +92,10 @@ void read_range(const json& value, const Reader& reader, Joint& joint) {
   } else if (nested && static_cast<int>(range.size()) == count) {
     for (int i = 0; i < count; ++i) joint.range.push_back(reader.interval(range[i], unit(i)));
   } else {
-    reader.problems().add(range, fmt::format("the range of a {} joint must be {}",
-                                             to_string(joint.type),
-                                             count == 1 ? "[min, max]"
-                                                        : fmt::format("a list of {} pairs [min, max]", count)));
+    reader.problems().add(
+        range, fmt::format("the range of a {} joint must be {}", to_string(joint.type),
+                           count == 1 ? "[min, max]"
+                                      : fmt::format("a list of {} pairs [min, max]", count)));
   }
 }
 
@@ -122,8 +124,8 @@ JointDraft read_joint(const json& value, const Reader& reader, const Compass& co
   joint.type = *type;
   for (const char* key : needed(*type))
     if (member(value, key).is_null())
-      reader.problems().add_missing(
-          value, fmt::format("a {} joint needs \"{}\"", to_string(*type), key));
+      reader.problems().add_missing(value,
+                                    fmt::format("a {} joint needs \"{}\"", to_string(*type), key));
 
   const json& at = member(value, "at");
   draft.placed = !at.is_null();

@@ -65,12 +65,14 @@ void check_scope_names(const json& document, Problems& problems) {
   const auto check_free = [&](const std::string& name, const json& value) {
     if (is_reserved_name(name))
       problems.add(value, fmt::format("\"{}\" is a function or constant of expressions and cannot "
-                                      "name anything else", name));
+                                      "name anything else",
+                                      name));
   };
   const auto check_new = [&](const json& names, const json& taken, const char* by) {
     for (const auto& [name, value] : names.items())
       if (taken.is_object() && taken.contains(name))
-        problems.add(value, fmt::format("the name \"{}\" is given twice: {} has it, too", name, by));
+        problems.add(value,
+                     fmt::format("the name \"{}\" is given twice: {} has it, too", name, by));
   };
   for (const json* names : {&parameters, &derived})
     if (names->is_object())
@@ -125,11 +127,10 @@ std::string schema_of(const json& document, const std::string& file,
 }
 
 bool holds_word(const std::string& key) {
-  static constexpr std::array kWords = {"name",   "title",  "about",     "source", "label", "format",
-                                        "units",  "joint",  "type",      "form",   "side",  "between",
-                                        "body",   "unit",   "base",      "platform", "points",
-                                        "axis",   "axes",   "along",     "toward", "direction",
-                                        "cone_axis", "choose", "$schema"};
+  static constexpr std::array kWords = {
+      "name", "title", "about",   "source",    "label",     "format", "units",    "joint",  "type",
+      "form", "side",  "between", "body",      "unit",      "base",   "platform", "points", "axis",
+      "axes", "along", "toward",  "direction", "cone_axis", "choose", "$schema"};
   return std::ranges::find(kWords, key) != kWords.end();
 }
 
@@ -143,7 +144,8 @@ void collect_names(const json& part, const std::string& key, std::set<std::strin
   } else if (part.is_array()) {
     // Coordinates of an axis are expressions again; the two axes of a cross may be words.
     const bool words = key == "axes" || key == "between";
-    for (const json& value : part) collect_names(value, words ? key : "", names);
+    for (const json& value : part)
+      collect_names(value, words && value.is_string() ? key : "", names);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "catalog/diagnostics.hpp"
 #include "catalog/mechanism.hpp"
 
 namespace polyglide {

@@ -40,8 +40,9 @@ struct Copy {
 Vector3 cross_axis(const Vector3& axis, const Vector3& rod, const json& end, const Copy& copy) {
   const Vector3 other = axis.cross(rod);
   if (other.norm() < 1e-9)
-    copy.reader.problems().add(end, "the axis of this universal joint lies along the rod at home, "
-                                    "so its other axis is not determined");
+    copy.reader.problems().add(end,
+                               "the axis of this universal joint lies along the rod at home, "
+                               "so its other axis is not determined");
   return other.normalized();
 }
 
@@ -55,8 +56,7 @@ void append_end(Copy& copy, const std::string& part, const json& end, const Vect
   if (type != JointType::spherical) {
     static const json kTangential = "tangential";
     const json& word = member(end, "axis");
-    const Vector3 axis =
-        copy.reader.direction(word.is_null() ? kTangential : word, copy.compass);
+    const Vector3 axis = copy.reader.direction(word.is_null() ? kTangential : word, copy.compass);
     joint.axes[0] = axis;
     if (type == JointType::universal) {
       const Vector3 other = cross_axis(axis, rod, end, copy);
@@ -83,9 +83,8 @@ double carriage_position(const Vector3& start, const Vector3& direction, const V
     copy.reader.problems().add(
         rods.is_object() && rods.contains("length") ? rods["length"] : rods,
         fmt::format("loop does not close at home: rod of {:.6g} {} cannot span the {:.6g} {} from "
-                    "its platform joint to the guide of limb {}",
-                    rod / units.metres, units.length, apart / units.metres, units.length,
-                    copy.name));
+                    "its platform joint to the guide",
+                    rod / units.metres, units.length, apart / units.metres, units.length));
     return kNaN;
   }
   return -along + (near ? -1 : 1) * std::sqrt(rest);
@@ -110,7 +109,8 @@ void expand_guide(Copy& copy, const json& limb) {
   copy.compass.rod = (platform - carriage - to_rod).normalized();
 
   const std::string slider = copy.name + ".carriage";
-  Joint& slide = copy.append("guide", JointType::prismatic, carriage, guide, copy.between[0], slider);
+  Joint& slide =
+      copy.append("guide", JointType::prismatic, carriage, guide, copy.between[0], slider);
   slide.axes[0] = direction;
   if (member(guide, "drive") != false) slide.driven = {0};
   if (const json& stroke = member(guide, "stroke"); !stroke.is_null()) {
@@ -166,7 +166,7 @@ void expand_strut(Copy& copy, const json& strut) {
 void expand_chain(Copy& copy, const json& chain) {
   for (std::size_t i = 0; i < chain.size(); ++i) {
     const auto link = [&](std::size_t n) {
-      return n == 0 ? copy.between[0]
+      return n == 0              ? copy.between[0]
              : n == chain.size() ? copy.between[1]
                                  : fmt::format("{}.link{}", copy.name, n);
     };

@@ -52,15 +52,15 @@ struct Range {
 struct Joint {
   std::string name;
   JointType type = JointType::revolute;
-  std::array<int, 2> bodies{};               ///< indices into Mechanism::bodies
-  Vector3 at = Vector3::Zero();              ///< a point on the axis, or the centre [m]
+  std::array<int, 2> bodies{};   ///< indices into Mechanism::bodies
+  Vector3 at = Vector3::Zero();  ///< a point on the axis, or the centre [m]
   std::array<Vector3, 2> axes{Vector3::UnitZ(), Vector3::UnitX()};
   ///< unit; [0] the axis or normal; [1] only for universal, fixed in bodies[1].
-  double pitch = 0;                          ///< helical: advance per radian [m/rad]
-  std::vector<int> driven;                   ///< driven freedom indices, ascending
-  std::vector<Range> range;                  ///< one per freedom; empty = unlimited
-  std::optional<double> cone;                ///< largest deflection of cone_axis [rad]
-  Vector3 cone_axis = Vector3::Zero();       ///< unit; set whenever cone is
+  double pitch = 0;                     ///< helical: advance per radian [m/rad]
+  std::vector<int> driven;              ///< driven freedom indices, ascending
+  std::vector<Range> range;             ///< one per freedom; empty = unlimited
+  std::optional<double> cone;           ///< largest deflection of cone_axis [rad]
+  Vector3 cone_axis = Vector3::Zero();  ///< unit; set whenever cone is
 };
 
 /// Points of one body that must stay on the inner side of planes fixed in the
@@ -80,7 +80,7 @@ struct HalfSpaceLimit {
 struct Units {
   std::string length = "mm";
   std::string angle = "deg";
-  double metres = 1e-3;                 ///< one file length unit in metres
+  double metres = 1e-3;                   ///< one file length unit in metres
   double radians = 0.017453292519943295;  ///< one file angle unit in radians
 };
 

@@ -12,7 +12,8 @@ namespace polyglide {
 [[nodiscard]] std::string shown(const nlohmann::json& value);
 
 /// "did you mean "word"?" for the nearest of `words`, or "" when none is near.
-[[nodiscard]] std::string did_you_mean(std::string_view word, const std::vector<std::string>& words);
+[[nodiscard]] std::string did_you_mean(std::string_view word,
+                                       const std::vector<std::string>& words);
 
 /// The JSON pointer of a value that is part of `document`, found by its address,
 /// so that reading code need not carry its place along; "" when it is not part.

@@ -128,8 +128,8 @@ class Checker {
       rule("maximum", number, std::greater<>(), "must be at most");
       rule("exclusiveMinimum", number, std::less_equal<>(), "must be greater than");
     }
-    const auto size = static_cast<double>(value.is_string() ? value.get_ref<const std::string&>().size()
-                                                            : value.size());
+    const auto size = static_cast<double>(
+        value.is_string() ? value.get_ref<const std::string&>().size() : value.size());
     if (value.is_string()) {
       rule("minLength", size, std::less<>(), "the least number of characters is");
     } else if (value.is_array()) {
@@ -166,8 +166,10 @@ class Checker {
     found_ = std::move(outside);
     about_ = about;
     if (holds) return;
-    if (meant.empty()) add(value, pointer, "has the wrong form");
-    else found_.insert(found_.end(), meant.begin(), meant.end());
+    if (meant.empty())
+      add(value, pointer, "has the wrong form");
+    else
+      found_.insert(found_.end(), meant.begin(), meant.end());
   }
 
   void check_groups(const json& value, const json& groups, const std::string& pointer) {
@@ -175,8 +177,10 @@ class Checker {
     std::string rule = "exactly one of these must be given:";
     for (const json& group : groups) {
       const std::vector<std::string> names = strings(group.at("required"));
-      complete += std::ranges::all_of(names, [&](const auto& name) { return value.contains(name); });
-      rule += fmt::format("{} {}", &group == &groups.front() ? "" : ",", words(group["required"], " with "));
+      complete +=
+          std::ranges::all_of(names, [&](const auto& name) { return value.contains(name); });
+      rule += fmt::format("{} {}", &group == &groups.front() ? "" : ",",
+                          words(group["required"], " with "));
     }
     if (complete != 1) add(value, pointer, rule);
   }

@@ -1,8 +1,8 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
-
-#include <fmt/format.h>
 
 #include "catalog/layout.hpp"
 
