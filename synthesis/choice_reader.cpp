@@ -21,16 +21,27 @@ std::string text_of(const Json& object, const char* key) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
+namespace {
+
+// The list of options of an entry of `choices`, or of a choice written in place.
+const Json* list_of(const Json& definition) {
+  const auto found = definition.find(is_choice(definition) ? "choose" : "options");
+  return found != definition.end() && found->is_array() ? &*found : nullptr;
+}
+
+}  // namespace
+
 ChoiceReader::ChoiceReader(const Json& document, Problems& problems)
     : document_(document), problems_(problems) {
   visit_inside(document);
   std::ranges::reverse(finished_);
-  for (const Json* choice : finished_) index_.emplace(choice, static_cast<int>(index_.size()));
+  for (const Key& key : finished_) index_.emplace(key, static_cast<int>(index_.size()));
+  check_names();
 }
 
 std::vector<Choice> ChoiceReader::choices() const {
   std::vector<Choice> result;
-  for (const Json* definition : finished_) result.push_back(read(*definition));
+  for (const Key& key : finished_) result.push_back(read(key));
   return result;
 }
 
@@ -39,26 +50,43 @@ const Json* ChoiceReader::declared() const {
   return found != document_.end() && found->is_object() ? &*found : nullptr;
 }
 
-// What a {"choose": …} node stands for: the entry of `choices`, or the node itself.
-const Json* ChoiceReader::definition(const Json& node, bool complain) const {
+// No options when what stands there is not a choice; check_reference() says why.
+ChoiceReader::Key ChoiceReader::key_of(const Json& node) const {
   const Json& word = node.at("choose");
-  if (word.is_array()) return &node;
-  if (word.is_string() && declared() != nullptr) {
-    const auto found = declared()->find(word.get<std::string>());
-    if (found != declared()->end()) return found->is_object() ? &*found : nullptr;
-  }
-  if (!complain) return nullptr;
+  if (word.is_array()) return {&node, text_of(node, "as")};
+  if (!word.is_string() || declared() == nullptr) return {};
+  const auto found = declared()->find(word.get<std::string>());
+  if (found == declared()->end() || !found->is_object()) return {};
+  return {&*found, text_of(node, "as")};
+}
+
+void ChoiceReader::check_reference(const Json& node) const {
+  for (const auto& entry : node.items())
+    if (entry.key() != "choose" && entry.key() != "as")
+      problems_.add(entry.value(), "a choice holds nothing beside \"choose\" and \"as\"",
+                    did_you_mean(entry.key(), {"choose", "as"}));
+  if (node.contains("as") && text_of(node, "as").empty())
+    problems_.add(node.at("as"), "must be a name for this choice");
+  const Json& word = node.at("choose");
+  if (key_of(node).options != nullptr) return;
   std::vector<std::string> names;
   if (declared() != nullptr)
     for (const auto& entry : declared()->items()) names.push_back(entry.key());
   problems_.add(word, "must name a choice declared under choices, or be a list of options",
                 word.is_string() ? did_you_mean(word.get<std::string>(), names) : "");
-  return nullptr;
 }
 
-const Json* ChoiceReader::options_of(const Json& definition) const {
-  const auto found = definition.find(is_choice(definition) ? "choose" : "options");
-  return found != definition.end() && found->is_array() ? &*found : nullptr;
+void ChoiceReader::check_options(const Json& list) const {
+  if (list.empty()) problems_.add(list, "a choice needs at least one option");
+  std::set<std::string> labels;
+  for (const Json& option : list) {
+    const std::string label = option.is_object() ? text_of(option, "label") : "";
+    if (label.empty() || !option.contains("value")) {
+      problems_.add(option, "an option needs a \"label\" (text) and a \"value\"");
+    } else if (!labels.insert(label).second) {
+      problems_.add(option.at("label"), "two options of a choice must not have the same label");
+    }
+  }
 }
 
 // Backwards, because the order of choices is the reverse of that in which they are finished.
@@ -70,46 +98,39 @@ void ChoiceReader::visit_inside(const Json& value) {
 }
 
 void ChoiceReader::visit(const Json& node) {
-  if (node.size() > 1) problems_.add(node, "a choice holds nothing beside \"choose\"");
-  const Json* choice = definition(node, true);
-  if (choice == nullptr) return;
-  if (const auto before = visits_.find(choice); before != visits_.end()) {
+  check_reference(node);
+  const Key key = key_of(node);
+  if (key.options == nullptr) return;
+  if (const auto before = visits_.find(key); before != visits_.end()) {
     if (before->second == Visit::open) problems_.add(node, "a choice must not contain itself");
     return;
   }
-  check(*choice);
-  const Json* options = options_of(*choice);
-  if (options == nullptr) return;
-  options_ += options->size();
-  if (visits_.size() >= kMostChoices || options_ > kMostOptions) {
-    problems_.add(document_, fmt::format("must hold at most {} choices with {} options in all",
-                                         kMostChoices, kMostOptions));
-    return;
-  }
-  visits_[choice] = Visit::open;
-  for (auto option = options->rbegin(); option != options->rend(); ++option)
+  const Json* list = list_of(*key.options);
+  if (list == nullptr) return problems_.add(*key.options, "a choice needs a list of options");
+  check_options(*list);
+  options_ += list->size();
+  if (visits_.size() >= kMostChoices || options_ > kMostOptions)
+    return problems_.add(document_, fmt::format("must hold at most {} choices with {} options in "
+                                                "all",
+                                                kMostChoices, kMostOptions));
+  visits_[key] = Visit::open;
+  for (auto option = list->rbegin(); option != list->rend(); ++option)
     if (option->is_object() && option->contains("value")) visit_inside(option->at("value"));
-  visits_[choice] = Visit::done;
-  finished_.push_back(choice);
+  visits_[key] = Visit::done;
+  finished_.push_back(key);
 }
 
-void ChoiceReader::check(const Json& definition) const {
-  const Json* options = options_of(definition);
-  if (options == nullptr) return problems_.add(definition, "a choice needs a list of options");
-  if (options->empty()) problems_.add(*options, "a choice needs at least one option");
-  std::set<std::string> labels;
-  for (const Json& option : *options) {
-    const std::string label = option.is_object() ? text_of(option, "label") : "";
-    if (label.empty() || !option.contains("value")) {
-      problems_.add(option, "an option needs a \"label\" (text) and a \"value\"");
-    } else if (!labels.insert(label).second) {
-      problems_.add(option.at("label"), "two options of a choice must not have the same label");
-    }
-  }
+// Candidates tell their choices by name.
+void ChoiceReader::check_names() const {
+  std::set<std::string> names;
+  for (const Key& key : finished_)
+    if (!names.insert(name_of(key)).second)
+      problems_.add(*key.options,
+                    fmt::format("two choices must not both be called \"{}\"", name_of(key)));
 }
 
 Json ChoiceReader::numbered(const Json& value) const {
-  if (is_choice(value)) return {{"choose", index_.at(definition(value, false))}};
+  if (is_choice(value)) return {{"choose", index_.at(key_of(value))}};
   if (!value.is_structured()) return value;
   Json result = value;
   for (auto child = result.begin(); child != result.end(); ++child) {
@@ -130,19 +151,25 @@ std::vector<int> ChoiceReader::choices_inside(const Json& value) const {
 }
 
 void ChoiceReader::collect(const Json& value, std::vector<int>& found) const {
-  if (is_choice(value)) return found.push_back(index_.at(definition(value, false)));
+  if (is_choice(value)) return found.push_back(index_.at(key_of(value)));
   if (!value.is_structured()) return;
   for (auto child = value.begin(); child != value.end(); ++child)
     if (&value != &document_ || child.key() != "choices") collect(*child, found);
 }
 
-Choice ChoiceReader::read(const Json& definition) const {
+// One written in place and not named goes by its place.
+std::string ChoiceReader::name_of(const Key& key) const {
+  if (!key.as.empty()) return key.as;
+  const std::string pointer = pointer_to(document_, *key.options);
+  if (pointer.empty()) return "";
+  return is_choice(*key.options) ? pointer.substr(1) : Json::json_pointer(pointer).back();
+}
+
+Choice ChoiceReader::read(const Key& key) const {
   Choice choice;
-  const std::string pointer = pointer_to(document_, definition);
-  choice.name = Json::json_pointer(pointer).back();
-  if (is_choice(definition)) choice.name = pointer.substr(1);  // written in place
-  choice.about = text_of(definition, "about");
-  for (const Json& option : *options_of(definition))
+  choice.name = name_of(key);
+  choice.about = text_of(*key.options, "about");
+  for (const Json& option : *list_of(*key.options))
     choice.options.push_back({text_of(option, "label"), numbered(option.at("value")),
                               choices_inside(option.at("value"))});
   return choice;

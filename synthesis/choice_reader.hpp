@@ -1,7 +1,9 @@
 #pragma once
 
+#include <compare>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "catalog/problems.hpp"
@@ -36,22 +38,31 @@ class ChoiceReader {
   [[nodiscard]] std::vector<int> choices_inside(const Json& value) const;
 
  private:
+  /// What makes a choice: where its options are written, and the name under which
+  /// they are chosen ("" unless one is given).
+  struct Key {
+    const Json* options = nullptr;  ///< the entry of `choices`, or the choice itself
+    std::string as;
+    friend auto operator<=>(const Key&, const Key&) = default;
+  };
   enum class Visit { open, done };
 
   [[nodiscard]] const Json* declared() const;
-  [[nodiscard]] const Json* definition(const Json& node, bool complain) const;
-  [[nodiscard]] const Json* options_of(const Json& definition) const;
+  [[nodiscard]] Key key_of(const Json& node) const;
+  void check_reference(const Json& node) const;
+  void check_options(const Json& list) const;
   void visit_inside(const Json& value);
   void visit(const Json& node);
-  void check(const Json& definition) const;
+  void check_names() const;
   void collect(const Json& value, std::vector<int>& found) const;
-  [[nodiscard]] Choice read(const Json& definition) const;
+  [[nodiscard]] std::string name_of(const Key& key) const;
+  [[nodiscard]] Choice read(const Key& key) const;
 
   const Json& document_;
   Problems& problems_;
-  std::map<const Json*, Visit> visits_;
-  std::vector<const Json*> finished_;
-  std::map<const Json*, int> index_;
+  std::map<Key, Visit> visits_;
+  std::vector<Key> finished_;
+  std::map<Key, int> index_;
   std::size_t options_ = 0;
 };
 

@@ -200,7 +200,7 @@ Layout candidate_layout(const Space& space, std::uint64_t raw_index, const std::
 }
 
 StoreIdentity campaign_identity(const Space& space, std::uint64_t seed) {
-  return {{"space", space.hash}, {"seed", std::to_string(seed)}};
+  return {{"space", space.hash}, {"seed", std::to_string(seed)}, {"version", POLYGLIDE_VERSION}};
 }
 
 nlohmann::ordered_json to_json(const Enumeration& enumeration) {

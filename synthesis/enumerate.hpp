@@ -75,7 +75,8 @@ struct Enumeration {
 [[nodiscard]] Layout candidate_layout(const Space& space, std::uint64_t raw_index,
                                       const std::string& name);
 
-/// What a store of this space's enumeration belongs to.
+/// What a store of this space's enumeration belongs to: the space by content, the seed, and
+/// the version of polyglide. Add facts for evaluations that depend on more.
 [[nodiscard]] StoreIdentity campaign_identity(const Space& space, std::uint64_t seed);
 
 /// The `enumerate --json` document.

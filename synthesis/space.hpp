@@ -53,9 +53,9 @@ struct RawCandidate {
 /// The same from a document in memory; `file` only labels messages.
 [[nodiscard]] Space parse_space(nlohmann::json document, const std::string& file);
 
-/// Number of ways to choose everything: a named choice counts once however often
-/// it is used, and a choice inside an option only where that option is taken.
-/// A space without choices has one. At most 2^53; load_space refuses more.
+/// Number of ways to choose everything: a choice counts once however often its
+/// name (the one after "as", if there is one) is used, and a choice inside an option only where
+/// that option is taken. A space without choices has one. At most 2^53; load_space refuses more.
 [[nodiscard]] std::uint64_t raw_count(const Space& space);
 
 /// The candidate of that index, 0 <= index < raw_count(space); the first choice

@@ -40,8 +40,7 @@ inline Json necklace(int limbs, const std::vector<std::string>& ends) {
   for (int i = 0; i < limbs; ++i) {
     Json options = Json::array();
     for (const std::string& word : ends) options.push_back(option(word, end(word)));
-    space["limbs"].push_back(
-        limb(fmt::format("l{}", i), 360.0 * i / limbs, {{"choose", options}}));
+    space["limbs"].push_back(limb(fmt::format("l{}", i), 360.0 * i / limbs, {{"choose", options}}));
   }
   return space;
 }

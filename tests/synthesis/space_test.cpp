@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 
 #include "catalog/diagnostics.hpp"
@@ -205,13 +204,35 @@ TEST(SpaceMistakes, WhatIsNotAnObjectIsRefused) {
     EXPECT_NE(mistakes(document), "") << document;
 }
 
-TEST(Table1Space, HasItsDocumentedSize) {
-  const Space space =
-      load_space(std::filesystem::path(POLYGLIDE_SOURCE_DIR) / "examples/spaces/table1.json");
-  // Each pair: 2 kinds of rods, 4 ends at the carriage, 4 at the platform. Arrangements:
-  // cross with 3 guides in 2 ways, T with 3 guides and 2 of the stem, one and two.
-  EXPECT_EQ(raw_count(space), (3 * 2 + 3 * 2 + 1) * 32 * 32);
-  EXPECT_GE(raw_count(space), 10'000);
+TEST(Space, TellsTheSameOptionsApartByTheNameAfterAs) {
+  const auto leg = [](const char* as) { return Json{{"choose", "ends"}, {"as", as}}; };
+  const Json document = space_of(
+      {limb("a", 0, leg("leg a")), limb("b", 90, leg("leg b")), limb("c", 180, leg("leg a"))},
+      {{"ends", choice_of({"x", "y", "z"})}});
+  const Space space = parse_space(document, "test.json");
+  ASSERT_EQ(raw_count(space), 9);
+  std::set<std::pair<std::string, std::string>> pairs;
+  for (std::uint64_t i = 0; i < 9; ++i) {
+    const RawCandidate candidate = raw_candidate(space, i);
+    pairs.emplace(candidate.choices.at("leg a"), candidate.choices.at("leg b"));
+    const Json& limbs = candidate.layout.at("limbs");
+    EXPECT_EQ(limbs[0]["rods"]["carriage"], limbs[2]["rods"]["carriage"]);
+  }
+  EXPECT_EQ(pairs.size(), 9);
+}
+
+TEST(SpaceMistakes, TwoChoicesOfOneNameAreRefused) {
+  const auto as_same = [](const char* choose) { return Json{{"choose", choose}, {"as", "same"}}; };
+  const std::string said =
+      mistakes(space_of({limb("a", 0, as_same("one")), limb("b", 90, as_same("two"))},
+                        {{"one", choice_of({"x"})}, {"two", choice_of({"y"})}}));
+  EXPECT_NE(said.find("two choices must not both be called \"same\""), std::string::npos) << said;
+}
+
+TEST(SpaceMistakes, AChoiceHoldsNothingElse) {
+  const std::string said = mistakes(
+      space_of({limb("a", 0, {{"choose", "one"}, {"a", "leg a"}})}, {{"one", choice_of({"x"})}}));
+  EXPECT_NE(said.find("beside \"choose\""), std::string::npos) << said;
 }
 
 }  // namespace
