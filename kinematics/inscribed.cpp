@@ -41,20 +41,27 @@ Shape middle_of(const Shape& s) {
 
 bool is_box(const Shape& s) { return (s.tail<3>() - s.head<3>()).minCoeff() > 0; }
 
-/// Points on the surface of a cylinder, the edges first because they fail first.
-std::vector<Points> cylinder_surface(const Shape& s, int angles, int levels, int rings) {
+/// How densely a cylinder's surface is asked about.
+struct Density {
+  int angles, levels, rings;
+};
+constexpr Density kCoarse{40, 6, 3}, kDense{120, 16, 6};
+
+/// Points on the surface of a cylinder: its edges, which fail first; then the rest.
+std::vector<Points> cylinder_surface(const Shape& s, const std::vector<Eigen::Vector2d>& circle,
+                                     const Density& density) {
   std::vector<Points> parts(2);
-  const auto ring = [&](Points& part, double radius, double z, int count) {
-    for (int a = 0; a < count; ++a) {
-      const double angle = 2 * M_PI * a / count;
-      part.add({s[0] + radius * std::cos(angle), s[1] + radius * std::sin(angle), z});
-    }
+  const auto ring = [&](Points& part, double radius, double z, std::size_t stride) {
+    for (std::size_t a = 0; a < circle.size(); a += stride)
+      part.add({s[0] + radius * circle[a].x(), s[1] + radius * circle[a].y(), z});
   };
   for (double z : {s[2], s[3]}) {
-    ring(parts[0], s[4], z, angles);
-    for (int r = 0; r < rings; ++r) ring(parts[1], s[4] * r / rings, z, r == 0 ? 1 : angles * r / rings);
+    ring(parts[0], s[4], z, 1);
+    ring(parts[1], 0, z, circle.size());
+    for (int r = 1; r < density.rings; ++r) ring(parts[1], s[4] * r / density.rings, z, 2);
   }
-  for (int l = 1; l < levels; ++l) ring(parts[1], s[4], s[2] + (s[3] - s[2]) * l / levels, angles);
+  for (int l = 1; l < density.levels; ++l)
+    ring(parts[1], s[4], s[2] + (s[3] - s[2]) * l / density.levels, 1);
   return parts;
 }
 
@@ -92,7 +99,7 @@ struct Goal {
 /// step when nothing does. Random moves, always the same ones, lead out of the
 /// ridges where every listed move is blocked. Stops early at a gain of `enough`.
 Shape climb(Shape shape, double step, double finest, const Goal& goal) {
-  constexpr int kRandom = 120;
+  constexpr int kRandom = 40;
   std::mt19937_64 random(1);
   const auto random_move = [&] {
     Shape move = Shape::Zero(shape.size());
@@ -113,7 +120,7 @@ Shape climb(Shape shape, double step, double finest, const Goal& goal) {
   };
   for (double length = step; length >= finest && best < goal.enough; length /= 2) {
     bool improved = true;
-    for (int pass = 0; improved && pass < 20; ++pass) {
+    for (int pass = 0; improved && pass < 10; ++pass) {
       improved = false;
       for (const Shape& move : goal.moves) improved |= follow(length * move);
       for (int i = 0; i < kRandom; ++i) improved |= follow(length * random_move());
@@ -122,16 +129,14 @@ Shape climb(Shape shape, double step, double finest, const Goal& goal) {
   return shape;
 }
 
-/// How densely a cylinder's surface is asked about.
-struct Density {
-  int angles, levels, rings;
-};
-constexpr Density kCoarse{40, 6, 3}, kDense{120, 16, 6};
-
 std::function<bool(const Shape&)> cylinder_fits(const Probe& probe, const Density& density) {
-  return [&probe, density](const Shape& s) {
-    return s[3] >= s[2] && s[4] > 0 &&
-           all_inside(probe, cylinder_surface(s, density.angles, density.levels, density.rings));
+  std::vector<Eigen::Vector2d> circle;
+  for (int a = 0; a < density.angles; ++a) {
+    const double angle = 2 * M_PI * a / density.angles;
+    circle.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  return [&probe, density, circle](const Shape& s) {
+    return s[3] >= s[2] && s[4] > 0 && all_inside(probe, cylinder_surface(s, circle, density));
   };
 }
 
@@ -428,11 +433,15 @@ std::vector<Cylinder> Inscriber::tallest_cylinders() const {
   double step = std::pow(10, std::floor(std::log10(widest / 15)));
   for (double factor : {2.0, 2.5, 2.0})
     if (widest / step > 15) step *= factor;
-  for (int i = 1; i * step <= widest; ++i) {
-    const Cylinder found = tallest(i * step, std::numeric_limits<double>::infinity());
-    if (!(found.height > 0)) break;
-    series.push_back({i * step, found.height, found.center});
-  }
+  series.resize(static_cast<std::size_t>(widest / step));
+  tbb::parallel_for(std::size_t{0}, series.size(), [&](std::size_t i) {
+    const double diameter = static_cast<double>(i + 1) * step;
+    series[i] = tallest(diameter, std::numeric_limits<double>::infinity());
+    series[i].diameter = diameter;
+  });
+  const auto none = std::find_if(series.begin(), series.end(),
+                                 [](const Cylinder& cylinder) { return !(cylinder.height > 0); });
+  series.erase(none, series.end());
   return series;
 }
 

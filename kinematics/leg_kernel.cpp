@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kinematics/condition.hpp"
+#include "kinematics/batch_loops.hpp"
 #include "kinematics/limits.hpp"
 
 namespace polyglide {
@@ -12,7 +12,18 @@ namespace {
 constexpr double kSlack = 1e-9;        // [m, rad] a pose on its limit is allowed
 constexpr double kDisagreement = 1e-6; // of the rod length: two rods that ask one carriage to be here
 
-bool is_translational(const TaskSpace& task) { return task.axes == std::vector<int>{0, 1, 2}; }
+batch::Vector vector_of(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+signed char sign_of(double value) { return static_cast<signed char>((value > 0) - (value < 0)); }
+
+/// Determinant of the first n rows and columns; fixed sizes for the common ones.
+double determinant(const Eigen::Matrix<double, Eigen::Dynamic, batch::kMost>& jacobian, int n) {
+  switch (n) {
+    case 4: return jacobian.topLeftCorner<4, 4>().determinant();
+    case 6: return jacobian.topLeftCorner<6, 6>().determinant();
+    default: return jacobian.topLeftCorner(n, n).determinant();
+  }
+}
 
 }  // namespace
 
@@ -117,154 +128,98 @@ LegKernel::Oriented LegKernel::orient(const Eigen::Quaterniond& rotation) const 
 void LegKernel::evaluate(const Oriented& oriented, Block& block) const {
   block.drives.resize(static_cast<std::size_t>(drives_) * kBlock);
   block.rows.resize(static_cast<std::size_t>(drives_) * 3 * kBlock);
-  std::fill_n(block.limit, block.count, oriented.commanded ? -1 : motion_limit_);
-  std::fill_n(block.orientation, block.count, static_cast<signed char>(0));
+  block.code.assign(kBlock, oriented.commanded ? -1 : motion_limit_);
   const std::vector<int>& axes = machine_.task.axes;
   for (int axis = 0; axis < 3; ++axis) {
     if (std::count(axes.begin(), axes.end(), axis) > 0) continue;
     const double* stray = axis == 0 ? block.x : axis == 1 ? block.y : block.z;
     for (int i = 0; i < block.count; ++i)
-      if (std::abs(stray[i]) > kSlack) block.limit[i] = motion_limit_;
+      if (std::abs(stray[i]) > kSlack) block.code[i] = motion_limit_;
   }
   for (int row : oriented.rows) solve_leg(rows_[row], oriented.offsets[row], oriented, block);
-  check_planes(oriented, block);
+  for (const Oriented::Plane& plane : oriented.planes)
+    batch::check_plane(block.count, block.x, block.y, block.z, vector_of(plane.normal),
+                       &block.drives[static_cast<std::size_t>(std::max(plane.drive, 0)) * kBlock],
+                       plane.slope, plane.offset, plane.limit, block.code.data());
 
-  if (is_translational(machine_.task)) condition_translations(block);
-  else {
-    switch (axes.size()) {
-      case 1: condition<1>(oriented, block); break;
-      case 2: condition<2>(oriented, block); break;
-      case 3: condition<3>(oriented, block); break;
-      case 4: condition<4>(oriented, block); break;
-      case 5: condition<5>(oriented, block); break;
-      default: condition<6>(oriented, block); break;
-    }
-  }
-}
-
-void LegKernel::solve_leg(const Row& row, const Vector3& a, const Oriented& oriented,
-                          Block& block) const {
-  const Leg& leg = row.leg;
-  const Vector3 g = leg.direction;
-  const double length = leg.length, square = length * length, side = leg.side;
-  const bool guide = leg.kind == Leg::Kind::guide_rod;
-  double* s = &block.drives[static_cast<std::size_t>(leg.drive) * kBlock];
-  double* jx = &block.rows[static_cast<std::size_t>(leg.drive) * 3 * kBlock];
-  double *jy = jx + kBlock, *jz = jy + kBlock;
-  double place[kBlock], ux[kBlock], uy[kBlock], uz[kBlock];
-  int* limit = block.limit;
-  const int count = block.count;
-
-  // Place of the drive and direction of the rod.
-  for (int i = 0; i < count; ++i) {
-    const double vx = a.x() + block.x[i], vy = a.y() + block.y[i], vz = a.z() + block.z[i];
-    if (guide) {
-      const double along = vx * g.x() + vy * g.y() + vz * g.z();
-      const double px = vx - along * g.x(), py = vy - along * g.y(), pz = vz - along * g.z();
-      const double left = square - (px * px + py * py + pz * pz);
-      const double rise = side * std::sqrt(left > 0 ? left : 0);
-      limit[i] = limit[i] < 0 && left < 0 ? row.reach : limit[i];
-      place[i] = along + rise;
-      ux[i] = (px - rise * g.x()) / length;
-      uy[i] = (py - rise * g.y()) / length;
-      uz[i] = (pz - rise * g.z()) / length;
-    } else {
-      const double distance = std::sqrt(vx * vx + vy * vy + vz * vz);
-      limit[i] = limit[i] < 0 && !(distance > 0) ? row.reach : limit[i];
-      place[i] = distance - length;
-      ux[i] = vx / distance;
-      uy[i] = vy / distance;
-      uz[i] = vz / distance;
-    }
-  }
-  if (row.primary) {
-    const double min = leg.stroke.min - kSlack, max = leg.stroke.max + kSlack;
-    for (int i = 0; i < count; ++i) {
-      s[i] = place[i];
-      limit[i] = limit[i] < 0 && place[i] < min ? row.stroke_min : limit[i];
-      limit[i] = limit[i] < 0 && place[i] > max ? row.stroke_max : limit[i];
-    }
-    // u·(ṗ + ω×r) = (u·g) ṡ; for a strut u·g is 1.
-    for (int i = 0; i < count; ++i) {
-      const double gain = guide ? ux[i] * g.x() + uy[i] * g.y() + uz[i] * g.z() : 1;
-      jx[i] = ux[i] / gain;
-      jy[i] = uy[i] / gain;
-      jz[i] = uz[i] / gain;
-    }
-  } else {
-    for (int i = 0; i < count; ++i)
-      limit[i] = limit[i] < 0 && !(std::abs(place[i] - s[i]) <= kDisagreement * length) ? row.reach
-                                                                                        : limit[i];
-  }
-  for (const Cone& cone : row.cones) {
-    const Vector3 axis = cone.on_platform ? Vector3(oriented.rotation * cone.axis) : cone.axis;
-    for (int i = 0; i < count; ++i) {
-      const double cosine = ux[i] * axis.x() + uy[i] * axis.y() + uz[i] * axis.z();
-      limit[i] = limit[i] < 0 && cosine < cone.cosine ? cone.limit : limit[i];
-    }
-  }
-}
-
-void LegKernel::check_planes(const Oriented& oriented, Block& block) const {
-  for (const Oriented::Plane& plane : oriented.planes) {
-    const double* s = &block.drives[static_cast<std::size_t>(std::max(plane.drive, 0)) * kBlock];
-    for (int i = 0; i < block.count; ++i) {
-      const double height = plane.normal.x() * block.x[i] + plane.normal.y() * block.y[i] +
-                            plane.normal.z() * block.z[i] + plane.slope * s[i];
-      block.limit[i] = block.limit[i] < 0 && height > plane.offset ? plane.limit : block.limit[i];
-    }
-  }
-}
-
-/// Three translations: closed form, from JᵀJ summed over the drives.
-void LegKernel::condition_translations(Block& block) const {
-  Gram3 gram[kBlock];
-  std::fill_n(gram, block.count, Gram3{});
-  for (int d = 0; d < drives_; ++d) {
-    const double* jx = &block.rows[static_cast<std::size_t>(d) * 3 * kBlock];
-    const double *jy = jx + kBlock, *jz = jy + kBlock;
-    for (int i = 0; i < block.count; ++i) gram[i].add(jx[i], jy[i], jz[i]);
-  }
-  for (int i = 0; i < block.count; ++i) block.inverse_condition[i] = inverse_condition(gram[i]);
-  if (drives_ == 3) {
-    const double* j = block.rows.data();
-    for (int i = 0; i < block.count; ++i) {
-      const auto at = [j, i](int row, int column) { return j[(3 * row + column) * kBlock + i]; };
-      const double det = at(0, 0) * (at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1)) -
-                         at(0, 1) * (at(1, 0) * at(2, 2) - at(1, 2) * at(2, 0)) +
-                         at(0, 2) * (at(1, 0) * at(2, 1) - at(1, 1) * at(2, 0));
-      block.orientation[i] = static_cast<signed char>((det > 0) - (det < 0));
-    }
-  }
+  if (axes == std::vector<int>{0, 1, 2}) condition_translations(block);
+  else condition(oriented, block);
   for (int i = 0; i < block.count; ++i) {
+    block.limit[i] = static_cast<int>(block.code[i]);
     if (block.limit[i] < 0) continue;
     block.inverse_condition[i] = 0;
     block.orientation[i] = 0;
   }
 }
 
-template <int N>
+void LegKernel::solve_leg(const Row& row, const Vector3& offset, const Oriented& oriented,
+                          Block& block) const {
+  const Leg& leg = row.leg;
+  const bool guide = leg.kind == Leg::Kind::guide_rod;
+  double* place_of_drive = &block.drives[static_cast<std::size_t>(leg.drive) * kBlock];
+  double own_place[kBlock], along[3 * kBlock];
+  double* place = row.primary ? place_of_drive : own_place;
+  double* code = block.code.data();
+  const int count = block.count;
+  const double reach = row.reach;
+  if (guide)
+    batch::solve_rod(count, block.x, block.y, block.z,
+                     {vector_of(offset), vector_of(leg.direction), leg.length, leg.side, reach}, place,
+                     along, code);
+  else
+    batch::solve_strut(count, block.x, block.y, block.z, {vector_of(offset), leg.length, reach}, place,
+                       along, code);
+  if (row.primary) {
+    batch::check_range(count, place, leg.stroke.min - kSlack, row.stroke_min, leg.stroke.max + kSlack,
+                       row.stroke_max, code);
+    // u·(ṗ + ω×r) = (u·g) ṡ; for a strut u·g is 1.
+    double* j = &block.rows[static_cast<std::size_t>(leg.drive) * 3 * kBlock];
+    if (guide) batch::rod_row(count, along, vector_of(leg.direction), j);
+    else std::copy_n(along, 3 * kBlock, j);
+  } else {
+    batch::check_agreement(count, place, place_of_drive, kDisagreement * leg.length, reach, code);
+  }
+  for (const Cone& cone : row.cones)
+    batch::check_cone(count, along,
+                      vector_of(cone.on_platform ? Vector3(oriented.rotation * cone.axis) : cone.axis),
+                      cone.cosine, cone.limit, code);
+}
+
+void LegKernel::condition_translations(Block& block) const {
+  batch::condition3(block.count, drives_, block.rows.data(), block.inverse_condition);
+  std::fill_n(block.orientation, block.count, static_cast<signed char>(0));
+  if (drives_ != 3) return;
+  double det[kBlock];
+  batch::determinant3(block.count, block.rows.data(), det);
+  for (int i = 0; i < block.count; ++i) block.orientation[i] = sign_of(det[i]);
+}
+
 void LegKernel::condition(const Oriented& oriented, Block& block) const {
   const std::vector<int>& axes = machine_.task.axes;
+  const int n = static_cast<int>(axes.size());
   const double scale = 1 / machine_.task.characteristic_length;
-  for (int i = 0; i < block.count; ++i) {
-    block.inverse_condition[i] = 0;
-    if (block.limit[i] >= 0) continue;
-    Eigen::Matrix<double, N, N> gram = Eigen::Matrix<double, N, N>::Zero(), square;
-    for (int d = 0; d < drives_; ++d) {
-      const double* j = &block.rows[static_cast<std::size_t>(d) * 3 * kBlock + i];
-      const Vector3 force(j[0], j[kBlock], j[2 * kBlock]);
-      const Vector3 moment = oriented.arms[d].cross(force) * scale;
-      Eigen::Matrix<double, N, 1> row;
-      for (int k = 0; k < N; ++k) row[k] = axes[k] < 3 ? force[axes[k]] : moment[axes[k] - 3];
-      gram.noalias() += row * row.transpose();
-      if (d < N) square.row(d) = row;
+  batch::Grams grams;
+  double inverse[batch::kLanes];
+  Eigen::Matrix<double, Eigen::Dynamic, batch::kMost> jacobian(drives_, batch::kMost);
+  jacobian.setZero();
+  for (int begin = 0; begin < block.count; begin += batch::kLanes) {
+    const int lanes = std::min(batch::kLanes, block.count - begin);
+    std::fill_n(&grams.entry[0][0][0], batch::kMost * batch::kMost * batch::kLanes, 0.0);
+    for (int i = 0; i < lanes; ++i) {
+      block.orientation[begin + i] = 0;
+      if (block.code[begin + i] >= 0) continue;
+      for (int d = 0; d < drives_; ++d) {
+        const double* j = &block.rows[static_cast<std::size_t>(d) * 3 * kBlock + begin + i];
+        const Vector3 force(j[0], j[kBlock], j[2 * kBlock]);
+        const Vector3 moment = oriented.arms[d].cross(force) * scale;
+        for (int k = 0; k < n; ++k) jacobian(d, k) = axes[k] < 3 ? force[axes[k]] : moment[axes[k] - 3];
+        for (int k = 0; k < n; ++k)
+          for (int l = k; l < n; ++l) grams.entry[k][l][i] += jacobian(d, k) * jacobian(d, l);
+      }
+      if (drives_ == n) block.orientation[begin + i] = sign_of(determinant(jacobian, n));
     }
-    block.inverse_condition[i] = inverse_condition<N>(gram);
-    if (drives_ == N) {
-      const double det = square.determinant();
-      block.orientation[i] = static_cast<signed char>((det > 0) - (det < 0));
-    }
+    batch::condition_n(n, grams, inverse);
+    std::copy_n(inverse, lanes, block.inverse_condition + begin);
   }
 }
 

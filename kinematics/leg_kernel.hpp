@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "kinematics/batch_loops.hpp"
 #include "kinematics/solve.hpp"
 
 namespace polyglide {
@@ -18,7 +19,7 @@ namespace polyglide {
 /// (r × row)/characteristic length, r from the tool to the platform joint.
 class LegKernel {
  public:
-  static constexpr int kBlock = 256;  ///< most poses per call
+  static constexpr int kBlock = batch::kStride;  ///< most poses per call
 
   /// @param machine with legs and a pure task space; strokes that do not count are
   ///        unlimited in its legs already.
@@ -40,7 +41,7 @@ class LegKernel {
     int* limit = nullptr;
     double* inverse_condition = nullptr;
     signed char* orientation = nullptr;
-    std::vector<double> drives, rows;  ///< scratch, kept between calls
+    std::vector<double> drives, rows, code;  ///< scratch, kept between calls
   };
   void evaluate(const Oriented& oriented, Block& block) const;
 
@@ -72,9 +73,7 @@ class LegKernel {
   void add_cone(Row& row, int joint, bool on_platform, const std::vector<std::string>& ignored);
   void add_limit(const HalfSpaceLimit& limit, const std::vector<std::string>& ignored);
   void solve_leg(const Row& row, const Vector3& offset, const Oriented& oriented, Block& block) const;
-  void check_planes(const Oriented& oriented, Block& block) const;
   void condition_translations(Block& block) const;
-  template <int N>
   void condition(const Oriented& oriented, Block& block) const;
 
   Machine machine_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct Points {
   [[nodiscard]] Vector3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 
-/// Asks an evaluator about tool places at one orientation, and counts. A place
+/// Asks an evaluator about tool places at one orientation, and counts; asking is
+/// safe from several threads. A place
 /// belongs to the workspace when no limit stops it and no singular surface
 /// separates it from home: for square J the sign of det J is home's, and 1/κ > 1e-6.
 class Probe {
@@ -58,7 +60,7 @@ class Probe {
   std::vector<std::string> names_;
   std::array<bool, 3> active_{};
   int side_ = 0;
-  mutable std::size_t poses_ = 0;
+  mutable std::atomic<std::size_t> poses_ = 0;
 };
 
 /// Axis-parallel box of tool displacements.

@@ -1,5 +1,7 @@
 #include "kinematics/workspace.hpp"
 
+#include <tbb/parallel_invoke.h>
+
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -98,9 +100,9 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
   if (!region.empty && (!options.volume_only || options.box || options.cylinder)) {
     const Inscriber inscriber(probe, region);
     if (!options.volume_only) {
-      result.inscribed_cylinder = inscriber.largest_cylinder();
-      result.inscribed_box = inscriber.largest_box();
-      result.cylinders = inscriber.tallest_cylinders();
+      tbb::parallel_invoke([&] { result.cylinders = inscriber.tallest_cylinders(); },
+                           [&] { result.inscribed_cylinder = inscriber.largest_cylinder(); },
+                           [&] { result.inscribed_box = inscriber.largest_box(); });
     }
     if (options.box) result.asked_box = inscriber.place(*options.box);
     if (options.cylinder)
