@@ -31,6 +31,9 @@ void expand_limb(const nlohmann::json& limb, Scope& scope, const Units& units, P
                  const std::array<std::string, 2>& base_and_platform,
                  std::vector<JointDraft>& joints);
 
+/// Reads the limits of a machine whose joints are already there.
+void read_limits(const Layout& layout, const Reader& reader, Mechanism& mechanism);
+
 /// expand() without raising: what is wrong goes to `problems`, and then the
 /// mechanism is not to be used.
 [[nodiscard]] Mechanism assemble(const Layout& layout, const ParameterValues& values,

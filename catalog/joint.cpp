@@ -62,8 +62,9 @@ void read_drive(const json& value, const Reader& reader, Joint& joint) {
     if (!index.is_number_integer()) continue;
     const int freedom = index.get<int>();
     if (freedom < 0 || freedom >= count) {
-      reader.problems().add(index, fmt::format("a {} joint has {} freedoms, counted from 0",
-                                               to_string(joint.type), count));
+      reader.problems().add(index,
+                            fmt::format("the freedoms of a {} joint number {}, counted from 0",
+                                        to_string(joint.type), count));
     } else if (std::ranges::find(joint.driven, freedom) != joint.driven.end()) {
       reader.problems().add(index, "a freedom can be driven only once");
     } else {

@@ -164,6 +164,7 @@ void expand_strut(Copy& copy, const json& strut) {
 }
 
 void expand_chain(Copy& copy, const json& chain) {
+  if (!chain.is_array()) return;  // told by the schema
   for (std::size_t i = 0; i < chain.size(); ++i) {
     const auto link = [&](std::size_t n) {
       return n == 0              ? copy.between[0]

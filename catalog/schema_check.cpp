@@ -60,6 +60,13 @@ std::vector<std::string> strings(const json& list) {
   return result;
 }
 
+/// A part of a schema that may be absent, without copying it.
+const json& part(const json& schema, const char* keyword) {
+  static const json kNothing = json::object();
+  const auto found = schema.find(keyword);
+  return found == schema.end() ? kNothing : *found;
+}
+
 /// One pass over a document. Each method checks one group of keywords of JSON
 /// Schema draft-07 and appends what it finds.
 class Checker {
@@ -187,8 +194,8 @@ class Checker {
 
   void check_object(const json& value, const json& schema, const std::string& pointer) {
     const std::string about = about_;
-    const json properties = schema.value("properties", json::object());
-    for (const json& name : schema.value("required", json::array())) {
+    const json& properties = part(schema, "properties");
+    for (const json& name : part(schema, "required")) {
       if (value.contains(name.get<std::string>())) continue;
       about_ = properties.value(name, json::object()).value("description", "");
       add_missing(name, pointer);
@@ -212,8 +219,7 @@ class Checker {
     const std::string place = pointer + '/' + step;
     if (const auto known = properties.find(name); known != properties.end())
       return check(member, *known, place, "");
-    const json patterns = schema.value("patternProperties", json::object());
-    for (const auto& [pattern, sub] : patterns.items())
+    for (const auto& [pattern, sub] : part(schema, "patternProperties").items())
       if (matches(pattern, name)) return check(member, sub, place, "");
     const auto additional = schema.find("additionalProperties");
     if (additional == schema.end() || *additional == true) return;
