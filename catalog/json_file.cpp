@@ -109,8 +109,11 @@ std::string read_text(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) refuse(label, "must be readable");
 
+  // A pipe has no size beforehand, so the limit is kept while reading.
   std::string text;
-  std::string block(1 << 16, '\0');
+  std::string block(1 << 20, '\0');
+  if (const auto size = std::filesystem::file_size(file, error); !error)
+    text.reserve(std::min(size, kLargestFile + block.size()));
   while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) ||
          stream.gcount() > 0) {
     text.append(block, 0, static_cast<std::size_t>(stream.gcount()));

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <chrono>
+#include <ctime>
 #include <fstream>
 
 namespace polyglide {
@@ -88,9 +88,9 @@ TEST_F(JsonFile, MayBeNestedSixtyFourDeepAndNoDeeper) {
 
 TEST_F(JsonFile, OfFiftyMegabytesOfBracketsIsRefusedAtOnce) {
   const fs::path file = write(std::string(50 << 20, '['));
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // processor time: other programs do not count
   EXPECT_THROW(static_cast<void>(read_json(file)), InputError);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+  EXPECT_LT(std::clock() - start, CLOCKS_PER_SEC / 2);
 }
 
 TEST_F(JsonFile, WithMillionsOfEmptyListsIsRefused) {
