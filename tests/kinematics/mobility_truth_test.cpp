@@ -40,9 +40,11 @@ TEST_P(PublishedMechanism, HasTheExpectedCountsAndVerdict) {
   const nlohmann::json expected = read_json(kTruth / "mobility/expected.json")[GetParam()];
   const nlohmann::json found = check("mobility", GetParam());
   EXPECT_EQ(found["verdict"], expected["verdict"]) << found["reasons"];
-  for (const char* group : {"mobility", "platform", "drives"})
-    for (const auto& [field, value] : expected.value(group, nlohmann::json::object()).items())
+  for (const char* group : {"mobility", "platform", "drives"}) {
+    const nlohmann::json fields = expected.value(group, nlohmann::json::object());
+    for (const auto& [field, value] : fields.items())
       EXPECT_EQ(found[group][field], value) << group << "." << field;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Truth, PublishedMechanism, testing::ValuesIn(cases("mobility")), test_name);

@@ -176,7 +176,7 @@ TEST_F(DeltaOne, ForwardGivesBothRootsAndTheLowerOneIsHomes) {
 }
 
 TEST_F(DeltaOne, KeepsTheChecksOfThePaper) {
-  const double far = 0.11;  // towards a side of the triangle
+  const double far = 0.125;  // towards a side of the triangle
   const InverseResult result = solve_inverse(dut, {Vector3(0, far, 0.02)}, {"stroke", "cone"});
   EXPECT_FALSE(result.reachable);
   EXPECT_EQ(result.limit, "triangle");
