@@ -7,7 +7,8 @@
 
 // GCC's -O2 vectorises next to nothing. Sanitizers cannot start before the
 // resolvers that choose a clone have run.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && \
+    !defined(__SANITIZE_ADDRESS__)
 #define POLYGLIDE_VECTORISED \
   __attribute__((optimize("O3", "no-math-errno"), target_clones("default", "arch=x86-64-v3")))
 #else
@@ -84,8 +85,8 @@ void check_agreement(int count, const double* __restrict place, const double* __
 }
 
 POLYGLIDE_VECTORISED
-void check_cone(int count, const double* __restrict along, Vector axis, double cosine, double failure,
-                double* __restrict code) {
+void check_cone(int count, const double* __restrict along, Vector axis, double cosine,
+                double failure, double* __restrict code) {
   const double *ux = along, *uy = ux + kStride, *uz = uy + kStride;
   for (int i = 0; i < count; ++i) {
     const double failed = ux[i] * axis.x + uy[i] * axis.y + uz[i] * axis.z < cosine ? failure : -1;
@@ -163,8 +164,8 @@ static void rotate_pivot(double* __restrict pp, double* __restrict qq, double* _
 }
 
 POLYGLIDE_VECTORISED
-static void rotate_rest(double* __restrict rp, double* __restrict rq, const double* __restrict cosine,
-                        const double* __restrict sine) {
+static void rotate_rest(double* __restrict rp, double* __restrict rq,
+                        const double* __restrict cosine, const double* __restrict sine) {
   for (int i = 0; i < kLanes; ++i) {
     const double a = rp[i], b = rq[i];
     rp[i] = cosine[i] * a - sine[i] * b;

@@ -47,9 +47,8 @@ void in_blocks(std::size_t size, std::size_t block, const Work& work) {
     return;
   }
   const std::size_t blocks = (size + block - 1) / block;
-  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t i) {
-    work(i * block, std::min(size, (i + 1) * block));
-  });
+  tbb::parallel_for(std::size_t{0}, blocks,
+                    [&](std::size_t i) { work(i * block, std::min(size, (i + 1) * block)); });
 }
 
 }  // namespace
@@ -81,8 +80,10 @@ void Evaluator::evaluate(const PoseBatch& poses, BatchResult& result) const {
   result.limit.resize(poses.size());
   result.inverse_condition.resize(poses.size());
   result.orientation.resize(poses.size());
-  if (kernel_) evaluate_legs(poses, result);
-  else evaluate_general(poses, result);
+  if (kernel_)
+    evaluate_legs(poses, result);
+  else
+    evaluate_general(poses, result);
 }
 
 void Evaluator::evaluate_legs(const PoseBatch& poses, BatchResult& result) const {

@@ -10,14 +10,14 @@ namespace polyglide {
 
 /// What is asked at every pose of a batch, structure-of-arrays.
 struct PoseBatch {
-  std::vector<double> x, y, z;       ///< tool displacement from home [m]
+  std::vector<double> x, y, z;  ///< tool displacement from home [m]
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< common to the batch
   [[nodiscard]] std::size_t size() const { return x.size(); }
 };
 
 /// Answers, one per pose.
 struct BatchResult {
-  std::vector<int> limit;              ///< -1 reachable, else index into Evaluator::limit_names
+  std::vector<int> limit;                 ///< -1 reachable, else index into Evaluator::limit_names
   std::vector<double> inverse_condition;  ///< 1/κ of the task Jacobian, 0 where not reachable
   std::vector<signed char> orientation;   ///< sign of det J where J is square and reachable, else 0
 };

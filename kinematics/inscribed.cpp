@@ -10,7 +10,7 @@
 namespace polyglide {
 namespace {
 
-constexpr int kMostLayers = 40;     // of the thinned grid
+constexpr int kMostLayers = 40;         // of the thinned grid
 constexpr double kFinest = 1.0 / 1024;  // of a grid step: where the pattern search stops
 constexpr double kReserve = 1 + 2e-4;   // a shape asked for is sought this much larger
 
@@ -23,7 +23,8 @@ Box as_box(const Shape& s) { return {s.tail<3>() - s.head<3>(), (s.head<3>() + s
 
 Shape as_shape(const Cylinder& c) {
   Shape s(5);
-  s << c.center.x(), c.center.y(), c.center.z() - c.height / 2, c.center.z() + c.height / 2, c.diameter / 2;
+  s << c.center.x(), c.center.y(), c.center.z() - c.height / 2, c.center.z() + c.height / 2,
+      c.diameter / 2;
   return s;
 }
 
@@ -166,14 +167,28 @@ std::vector<Shape> with_shifts(const std::vector<std::array<double, 3>>& changes
 }
 
 std::vector<Shape> height_moves() {
-  return with_shifts({{0, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, 0.2, 0}, {-0.2, 0, 0}, {1, 3, 0}, {-3, -1, 0}});
+  return with_shifts(
+      {{0, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, 0.2, 0}, {-0.2, 0, 0}, {1, 3, 0}, {-3, -1, 0}});
 }
 
 /// Growth, and trades of height for width.
 std::vector<Shape> volume_moves() {
-  return with_shifts({{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}, {0, 0, 0.2}, {0, 0.2, 0}, {-0.2, 0, 0},
-                      {0, 1, 1}, {-1, 0, 1}, {0, -1, 1}, {1, 0, 1}, {0, -3, 1}, {3, 0, 1},
-                      {0, 2, -1}, {-2, 0, -1}, {0, 5, -1}, {-5, 0, -1}});
+  return with_shifts({{0, 0, 1},
+                      {0, 1, 0},
+                      {-1, 0, 0},
+                      {0, 0, 0.2},
+                      {0, 0.2, 0},
+                      {-0.2, 0, 0},
+                      {0, 1, 1},
+                      {-1, 0, 1},
+                      {0, -1, 1},
+                      {1, 0, 1},
+                      {0, -3, 1},
+                      {3, 0, 1},
+                      {0, 2, -1},
+                      {-2, 0, -1},
+                      {0, 5, -1},
+                      {-5, 0, -1}});
 }
 
 std::vector<Shape> box_moves() {
@@ -209,7 +224,9 @@ void distance_row(const std::vector<double>& f, std::vector<double>& result) {
   from[0] = -huge;
   from[1] = huge;
   for (int q = 1; q < n; ++q) {
-    const auto crossing = [&](int v) { return ((f[q] + q * q) - (f[v] + v * v)) / (2.0 * (q - v)); };
+    const auto crossing = [&](int v) {
+      return ((f[q] + q * q) - (f[v] + v * v)) / (2.0 * (q - v));
+    };
     while (last >= 0 && crossing(vertex[last]) <= from[last]) --last;
     from[last + 1] = last < 0 ? -huge : crossing(vertex[last]);
     vertex[++last] = q;
@@ -227,7 +244,8 @@ void distance_row(const std::vector<double>& f, std::vector<double>& result) {
 Inscriber::Inscriber(const Probe& probe, const Region& region) : probe_(probe) {
   if (region.empty || probe.dimensions() < 3) return;
   const NodeGrid& fine = region.grid;
-  const int stride = 1 + *std::max_element(fine.count.begin(), fine.count.end()) / (kMostLayers + 1);
+  const int stride =
+      1 + *std::max_element(fine.count.begin(), fine.count.end()) / (kMostLayers + 1);
   grid_.origin = fine.origin;
   grid_.step = fine.step * stride;
   for (int axis = 0; axis < 3; ++axis) grid_.count[axis] = 1 + (fine.count[axis] - 1) / stride;
@@ -249,7 +267,8 @@ void Inscriber::add_intervals() {
       intervals_.push_back({low, high, mask, 0, 0, 0});
     }
   }
-  tbb::parallel_for(std::size_t{0}, intervals_.size(), [this](std::size_t i) { find_disc(intervals_[i]); });
+  tbb::parallel_for(std::size_t{0}, intervals_.size(),
+                    [this](std::size_t i) { find_disc(intervals_[i]); });
 }
 
 void Inscriber::find_disc(Interval& interval) const {
@@ -310,7 +329,9 @@ Cylinder Inscriber::largest_cylinder() const {
   goal.moves = volume_moves();
   goal.free = {0, 1, 2, 3, 4};
   goal.fits = cylinder_fits(probe_, kCoarse);
-  goal.gain = [](const Shape& s) { return s[3] > s[2] && s[4] > 0 ? s[4] * s[4] * (s[3] - s[2]) : -1; };
+  goal.gain = [](const Shape& s) {
+    return s[3] > s[2] && s[4] > 0 ? s[4] * s[4] * (s[3] - s[2]) : -1;
+  };
   Shape shape = as_shape(seed);
   shape = shrink(shape, axis_point(shape), 0.9, 60, goal.fits);
   shape = climb(shape, grid_.step, grid_.step / 64, goal);

@@ -64,7 +64,7 @@ class Inscriber {
   [[nodiscard]] std::optional<Box> best_rectangle(const BoxGain& gain) const;
 
   const Probe& probe_;
-  NodeGrid grid_;             ///< the region's, thinned: it only gives starting places
+  NodeGrid grid_;  ///< the region's, thinned: it only gives starting places
   std::vector<char> inside_;
   std::vector<Interval> intervals_;
 };

@@ -9,8 +9,9 @@
 namespace polyglide {
 namespace {
 
-constexpr double kSlack = 1e-9;        // [m, rad] a pose on its limit is allowed
-constexpr double kDisagreement = 1e-6; // of the rod length: two rods that ask one carriage to be here
+constexpr double kSlack = 1e-9;  // [m, rad] a pose on its limit is allowed
+constexpr double kDisagreement =
+    1e-6;  // of the rod length: two rods that ask one carriage to be here
 
 batch::Vector vector_of(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -19,9 +20,12 @@ signed char sign_of(double value) { return static_cast<signed char>((value > 0) 
 /// Determinant of the first n rows and columns; fixed sizes for the common ones.
 double determinant(const Eigen::Matrix<double, Eigen::Dynamic, batch::kMost>& jacobian, int n) {
   switch (n) {
-    case 4: return jacobian.topLeftCorner<4, 4>().determinant();
-    case 6: return jacobian.topLeftCorner<6, 6>().determinant();
-    default: return jacobian.topLeftCorner(n, n).determinant();
+    case 4:
+      return jacobian.topLeftCorner<4, 4>().determinant();
+    case 6:
+      return jacobian.topLeftCorner<6, 6>().determinant();
+    default:
+      return jacobian.topLeftCorner(n, n).determinant();
   }
 }
 
@@ -103,7 +107,8 @@ LegKernel::Oriented LegKernel::orient(const Eigen::Quaterniond& rotation) const 
     // A rod parallel to the one that gives the drive, as in a parallelogram, asks the same again.
     const Row& row = rows_[i];
     const int first = machine_.legs->primary[row.leg.drive];
-    const bool repeats = !row.primary && row.cones.empty() && row.leg.kind == rows_[first].leg.kind &&
+    const bool repeats = !row.primary && row.cones.empty() &&
+                         row.leg.kind == rows_[first].leg.kind &&
                          std::abs(row.leg.length - rows_[first].leg.length) < 1e-12 &&
                          (oriented.offsets[i] - oriented.offsets[first]).norm() < 1e-12;
     if (!repeats) oriented.rows.push_back(i);
@@ -115,7 +120,8 @@ LegKernel::Oriented LegKernel::orient(const Eigen::Quaterniond& rotation) const 
   for (const Plane& plane : planes_) {
     double farthest = -std::numeric_limits<double>::infinity();
     for (const Vector3& point : plane.points) {
-      const Vector3 at = plane.on_platform ? Vector3(tool + oriented.rotation * (point - tool)) : point;
+      const Vector3 at =
+          plane.on_platform ? Vector3(tool + oriented.rotation * (point - tool)) : point;
       farthest = std::max(farthest, plane.plane.normal.dot(at));
     }
     oriented.planes.push_back({plane.on_platform ? plane.plane.normal : Vector3(Vector3::Zero()),
@@ -142,8 +148,10 @@ void LegKernel::evaluate(const Oriented& oriented, Block& block) const {
                        &block.drives[static_cast<std::size_t>(std::max(plane.drive, 0)) * kBlock],
                        plane.slope, plane.offset, plane.limit, block.code.data());
 
-  if (axes == std::vector<int>{0, 1, 2}) condition_translations(block);
-  else condition(oriented, block);
+  if (axes == std::vector<int>{0, 1, 2})
+    condition_translations(block);
+  else
+    condition(oriented, block);
   for (int i = 0; i < block.count; ++i) {
     block.limit[i] = static_cast<int>(block.code[i]);
     if (block.limit[i] < 0) continue;
@@ -164,25 +172,28 @@ void LegKernel::solve_leg(const Row& row, const Vector3& offset, const Oriented&
   const double reach = row.reach;
   if (guide)
     batch::solve_rod(count, block.x, block.y, block.z,
-                     {vector_of(offset), vector_of(leg.direction), leg.length, leg.side, reach}, place,
-                     along, code);
+                     {vector_of(offset), vector_of(leg.direction), leg.length, leg.side, reach},
+                     place, along, code);
   else
-    batch::solve_strut(count, block.x, block.y, block.z, {vector_of(offset), leg.length, reach}, place,
-                       along, code);
+    batch::solve_strut(count, block.x, block.y, block.z, {vector_of(offset), leg.length, reach},
+                       place, along, code);
   if (row.primary) {
-    batch::check_range(count, place, leg.stroke.min - kSlack, row.stroke_min, leg.stroke.max + kSlack,
-                       row.stroke_max, code);
+    batch::check_range(count, place, leg.stroke.min - kSlack, row.stroke_min,
+                       leg.stroke.max + kSlack, row.stroke_max, code);
     // u·(ṗ + ω×r) = (u·g) ṡ; for a strut u·g is 1.
     double* j = &block.rows[static_cast<std::size_t>(leg.drive) * 3 * kBlock];
-    if (guide) batch::rod_row(count, along, vector_of(leg.direction), j);
-    else std::copy_n(along, 3 * kBlock, j);
+    if (guide)
+      batch::rod_row(count, along, vector_of(leg.direction), j);
+    else
+      std::copy_n(along, 3 * kBlock, j);
   } else {
     batch::check_agreement(count, place, place_of_drive, kDisagreement * leg.length, reach, code);
   }
   for (const Cone& cone : row.cones)
-    batch::check_cone(count, along,
-                      vector_of(cone.on_platform ? Vector3(oriented.rotation * cone.axis) : cone.axis),
-                      cone.cosine, cone.limit, code);
+    batch::check_cone(
+        count, along,
+        vector_of(cone.on_platform ? Vector3(oriented.rotation * cone.axis) : cone.axis),
+        cone.cosine, cone.limit, code);
 }
 
 void LegKernel::condition_translations(Block& block) const {
@@ -212,7 +223,8 @@ void LegKernel::condition(const Oriented& oriented, Block& block) const {
         const double* j = &block.rows[static_cast<std::size_t>(d) * 3 * kBlock + begin + i];
         const Vector3 force(j[0], j[kBlock], j[2 * kBlock]);
         const Vector3 moment = oriented.arms[d].cross(force) * scale;
-        for (int k = 0; k < n; ++k) jacobian(d, k) = axes[k] < 3 ? force[axes[k]] : moment[axes[k] - 3];
+        for (int k = 0; k < n; ++k)
+          jacobian(d, k) = axes[k] < 3 ? force[axes[k]] : moment[axes[k] - 3];
         for (int k = 0; k < n; ++k)
           for (int l = k; l < n; ++l) grams.entry[k][l][i] += jacobian(d, k) * jacobian(d, l);
       }

@@ -72,7 +72,8 @@ class LegKernel {
   void add_leg(const Leg& leg, bool primary, const std::vector<std::string>& ignored);
   void add_cone(Row& row, int joint, bool on_platform, const std::vector<std::string>& ignored);
   void add_limit(const HalfSpaceLimit& limit, const std::vector<std::string>& ignored);
-  void solve_leg(const Row& row, const Vector3& offset, const Oriented& oriented, Block& block) const;
+  void solve_leg(const Row& row, const Vector3& offset, const Oriented& oriented,
+                 Block& block) const;
   void condition_translations(Block& block) const;
   void condition(const Oriented& oriented, Block& block) const;
 
@@ -86,13 +87,13 @@ class LegKernel {
 
 struct LegKernel::Oriented {
   Eigen::Matrix3d rotation;
-  bool commanded = true;           ///< the machine has the rotation that is asked
-  std::vector<int> rows;           ///< rows to solve: those that another one does not repeat
-  std::vector<Vector3> offsets;    ///< a, per row of the kernel
-  std::vector<Vector3> arms;       ///< r, per drive, of its primary leg
+  bool commanded = true;         ///< the machine has the rotation that is asked
+  std::vector<int> rows;         ///< rows to solve: those that another one does not repeat
+  std::vector<Vector3> offsets;  ///< a, per row of the kernel
+  std::vector<Vector3> arms;     ///< r, per drive, of its primary leg
   struct Plane {
-    Vector3 normal;                ///< acts on t; zero for points off the platform
-    double offset, slope;          ///< normal·t + slope·drive <= offset
+    Vector3 normal;        ///< acts on t; zero for points off the platform
+    double offset, slope;  ///< normal·t + slope·drive <= offset
     int drive, limit;
   };
   std::vector<Plane> planes;

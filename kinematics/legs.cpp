@@ -22,7 +22,9 @@ bool is_drive(const Joint& joint) {
 class Recogniser {
  public:
   explicit Recogniser(const Model& model)
-      : model_(model), mechanism_(model.mechanism), joints_of_(mechanism_.bodies.size()),
+      : model_(model),
+        mechanism_(model.mechanism),
+        joints_of_(mechanism_.bodies.size()),
         used_(mechanism_.joints.size(), false) {
     for (int j = 0; j < static_cast<int>(mechanism_.joints.size()); ++j)
       for (int body : mechanism_.joints[j].bodies) joints_of_[body].push_back(j);
@@ -35,7 +37,8 @@ class Recogniser {
       if (!leg) return std::nullopt;
       machine.legs.push_back(*leg);
     }
-    if (!std::all_of(used_.begin(), used_.end(), [](bool used) { return used; })) return std::nullopt;
+    if (!std::all_of(used_.begin(), used_.end(), [](bool used) { return used; }))
+      return std::nullopt;
     for (int drive = 0; drive < static_cast<int>(model_.drives.size()); ++drive) {
       const auto leg = std::find_if(machine.legs.begin(), machine.legs.end(),
                                     [drive](const Leg& l) { return l.drive == drive; });
@@ -153,6 +156,8 @@ int leg_body(const Mechanism& mechanism, const Leg& leg) {
   return bodies[0] == mechanism.platform ? bodies[1] : bodies[0];
 }
 
-std::optional<LegMachine> recognise_legs(const Model& model) { return Recogniser(model).recognise(); }
+std::optional<LegMachine> recognise_legs(const Model& model) {
+  return Recogniser(model).recognise();
+}
 
 }  // namespace polyglide

@@ -12,13 +12,13 @@ namespace polyglide {
 /// driven strut between base and platform. Base frame at home, SI.
 struct Leg {
   enum class Kind { guide_rod, strut } kind = Kind::guide_rod;
-  int drive = 0;              ///< index into Model::drives
-  Vector3 base_point;         ///< carriage joint at home, or strut's base joint [m]
-  Vector3 direction;          ///< unit guide direction (guide_rod)
-  Vector3 platform_point;     ///< platform joint at home [m]
-  double length = 0;          ///< rod length, or strut length at home [m]
-  double side = 1;            ///< which of the two roots home is on (guide_rod): ±1
-  Range stroke;               ///< of the drive, from home [m]
+  int drive = 0;                           ///< index into Model::drives
+  Vector3 base_point;                      ///< carriage joint at home, or strut's base joint [m]
+  Vector3 direction;                       ///< unit guide direction (guide_rod)
+  Vector3 platform_point;                  ///< platform joint at home [m]
+  double length = 0;                       ///< rod length, or strut length at home [m]
+  double side = 1;                         ///< which of the two roots home is on (guide_rod): ±1
+  Range stroke;                            ///< of the drive, from home [m]
   int base_joint = 0, platform_joint = 0;  ///< indices of the end joints, for cones
 };
 

@@ -42,7 +42,8 @@ Points nodes_of(const NodeGrid& grid) {
 
 /// Connected parts of the nodes inside, over faces and with equal orientation.
 /// Returns the part of each node, -1 outside, and the parts' sizes.
-std::vector<int> label(const NodeGrid& grid, const Probe::Answers& answers, std::vector<int>& sizes) {
+std::vector<int> label(const NodeGrid& grid, const Probe::Answers& answers,
+                       std::vector<int>& sizes) {
   std::vector<int> part(grid.size(), -1);
   std::vector<std::array<int, 3>> queue;
   const auto visit = [&](int i, int j, int k, int number, int orientation) {
@@ -136,12 +137,14 @@ Probe::Answers Probe::ask(const Points& points) const {
     if (result.limit[i] < 0 && (across || !(result.inverse_condition[i] > kSingular)))
       result.limit[i] = singularity();
   }
-  return {std::move(result.limit), std::move(result.inverse_condition), std::move(result.orientation)};
+  return {std::move(result.limit), std::move(result.inverse_condition),
+          std::move(result.orientation)};
 }
 
 bool Probe::all_inside(const Points& points) const {
   const Answers answers = ask(points);
-  return std::all_of(answers.limit.begin(), answers.limit.end(), [](int limit) { return limit < 0; });
+  return std::all_of(answers.limit.begin(), answers.limit.end(),
+                     [](int limit) { return limit < 0; });
 }
 
 Region explore(Probe& probe, const Bounds& box, int nodes) {

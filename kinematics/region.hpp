@@ -82,7 +82,8 @@ struct NodeGrid {
     return static_cast<std::size_t>(count[0]) * count[1] * count[2];
   }
   [[nodiscard]] std::size_t index(int i, int j, int k) const {
-    return static_cast<std::size_t>(i) + static_cast<std::size_t>(count[0]) * (j + static_cast<std::size_t>(count[1]) * k);
+    return static_cast<std::size_t>(i) +
+           static_cast<std::size_t>(count[0]) * (j + static_cast<std::size_t>(count[1]) * k);
   }
   [[nodiscard]] Vector3 at(int i, int j, int k) const { return origin + step * Vector3(i, j, k); }
 };
@@ -91,8 +92,8 @@ struct NodeGrid {
 /// when home is outside).
 struct Region {
   NodeGrid grid;
-  std::vector<char> inside;               ///< per node
-  std::vector<int> limit;                 ///< per node; -1 = no limit, though perhaps of another part
+  std::vector<char> inside;  ///< per node
+  std::vector<int> limit;    ///< per node; -1 = no limit, though perhaps of another part
   std::vector<double> inverse_condition;  ///< per node
   Bounds extent;                          ///< of the nodes inside
   bool empty = true;

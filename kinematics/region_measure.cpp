@@ -19,7 +19,7 @@ double jitter(std::uint64_t cell, std::uint64_t sample, std::uint64_t axis) {
 
 class Measurer {
  public:
-  Measurer(const Probe& probe, const Region& region, const Fineness& fineness)
+  Measurer(const Probe& probe, const Region& region, const RegionFineness& fineness)
       : probe_(probe), region_(region), grid_(region.grid), fineness_(fineness) {
     cell_size_ = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -29,7 +29,7 @@ class Measurer {
     }
   }
 
-  Measure run(double accuracy) {
+  RegionMeasure run(double accuracy) {
     classify();
     promote_neighbours();
     start();
@@ -43,8 +43,8 @@ class Measurer {
   using Cell = std::array<int, 3>;
 
   std::size_t number(const Cell& c) const {
-    return static_cast<std::size_t>(c[0]) +
-           static_cast<std::size_t>(cells_[0]) * (c[1] + static_cast<std::size_t>(cells_[1]) * c[2]);
+    return static_cast<std::size_t>(c[0]) + static_cast<std::size_t>(cells_[0]) *
+                                                (c[1] + static_cast<std::size_t>(cells_[1]) * c[2]);
   }
 
   template <typename Visit>
@@ -91,8 +91,10 @@ class Measurer {
           const Cell part{a, b, c};
           for (int axis = 0; axis < 3; ++axis)
             if (active_[axis])
-              at[axis] += grid_.step *
-                          (part[axis] + jitter(number(cell), sample, static_cast<std::uint64_t>(axis))) / strata;
+              at[axis] +=
+                  grid_.step *
+                  (part[axis] + jitter(number(cell), sample, static_cast<std::uint64_t>(axis))) /
+                  strata;
           points.add(at);
         }
   }
@@ -243,7 +245,8 @@ class Measurer {
                 if (i >= nodes[0] || j >= nodes[1] || k >= nodes[2]) continue;
                 ++corners;
                 inside += answers.inside(m * per_cell + i +
-                                         static_cast<std::size_t>(nodes[0]) * (j + static_cast<std::size_t>(nodes[1]) * k));
+                                         static_cast<std::size_t>(nodes[0]) *
+                                             (j + static_cast<std::size_t>(nodes[1]) * k));
               }
               wholly_in += inside == corners;
               not_out += inside > 0;
@@ -257,19 +260,19 @@ class Measurer {
   const Probe& probe_;
   const Region& region_;
   const NodeGrid& grid_;
-  const Fineness& fineness_;
+  const RegionFineness& fineness_;
   std::array<bool, 3> active_{};
   Cell cells_{};
   double cell_size_ = 0, whole_ = 0, condition_ = 0;
   std::vector<char> state_;
   std::vector<Cell> mixed_;
-  Measure result_;
+  RegionMeasure result_;
 };
 
 }  // namespace
 
-Fineness fineness_for(double accuracy, bool closed_form) {
-  Fineness fineness;
+RegionFineness region_fineness(double accuracy, bool closed_form) {
+  RegionFineness fineness;
   if (!closed_form) return {1500, 1, 1, 1, 2, 4};
   if (accuracy > 1e-3) {
     const double nodes = 2e5 * 1e-3 / accuracy;
@@ -278,7 +281,8 @@ Fineness fineness_for(double accuracy, bool closed_form) {
   return fineness;
 }
 
-Measure measure(const Probe& probe, const Region& region, const Fineness& fineness, double accuracy) {
+RegionMeasure measure_region(const Probe& probe, const Region& region,
+                             const RegionFineness& fineness, double accuracy) {
   if (region.empty) return {};
   return Measurer(probe, region, fineness).run(accuracy);
 }
@@ -306,7 +310,8 @@ Boundary find_boundary(const Probe& probe, const Region& region, int bisections)
           }
           const std::size_t other = grid.index(next[0], next[1], next[2]);
           if (!region.inside[other])
-            edges.push_back({in, out, region.limit[other] < 0 ? probe.singularity() : region.limit[other]});
+            edges.push_back(
+                {in, out, region.limit[other] < 0 ? probe.singularity() : region.limit[other]});
         }
       }
   for (int round = 0; round < bisections; ++round) {

@@ -12,24 +12,34 @@ class Turner {
     side_ = Probe(evaluator_, turned(0)).side();
   }
 
-  /// Which places are reachable, regular and on home's side when turned by `angle`.
-  std::vector<char> free_at(const Points& places, double angle) {
+  /// Which limit stops each place when turned by `angle`; "" where it is reachable,
+  /// regular and on home's side.
+  std::vector<std::string> stopped_at(const Points& places, double angle) {
     Probe probe(evaluator_, turned(angle));
     probe.set_side(side_);
     const Probe::Answers answers = probe.ask(places);
     poses_ += places.size();
-    std::vector<char> free(places.size());
-    for (std::size_t i = 0; i < free.size(); ++i) free[i] = answers.inside(i);
-    return free;
+    std::vector<std::string> limits(places.size());
+    for (std::size_t i = 0; i < limits.size(); ++i)
+      if (!answers.inside(i)) limits[i] = probe.names()[answers.limit[i]];
+    return limits;
   }
 
-  /// Where the rotation of one place ends between two angles.
-  double bisect(const Vector3& place, double free, double stopped) {
+  /// Moves `free` to where the rotation of one place ends before free + step, and
+  /// names what ends it.
+  std::string find_end(const Vector3& place, double& free, double step) {
+    if (std::abs(free + step) > M_PI + 1e-9) return "";
+    Points points;
+    points.add(place);
+    double stopped = free + step;
+    std::string limit = stopped_at(points, stopped)[0];
     for (int i = 0; i < 12; ++i) {
       const double middle = (free + stopped) / 2;
-      (free_at(single(place), middle)[0] ? free : stopped) = middle;
+      const std::string there = stopped_at(points, middle)[0];
+      (there.empty() ? free : stopped) = middle;
+      if (!there.empty()) limit = there;
     }
-    return free;
+    return limit;
   }
 
   std::size_t poses() const { return poses_; }
@@ -38,12 +48,6 @@ class Turner {
   Eigen::Quaterniond turned(double angle) const {
     return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis_));
   }
-  static Points single(const Vector3& place) {
-    Points points;
-    points.add(place);
-    return points;
-  }
-
   const Evaluator& evaluator_;
   Vector3 axis_;
   int side_ = 0;
@@ -59,10 +63,10 @@ std::vector<double> turn_all(Turner& turner, Points places, double step) {
   for (int n = 1; n <= steps && !turning.empty(); ++n) {
     Points asked;
     for (std::size_t i : turning) asked.add(places[i]);
-    const std::vector<char> free = turner.free_at(asked, n * step);
+    const std::vector<std::string> stopped = turner.stopped_at(asked, n * step);
     std::vector<std::size_t> still;
     for (std::size_t i = 0; i < turning.size(); ++i) {
-      if (!free[i]) continue;
+      if (!stopped[i].empty()) continue;
       last[turning[i]] = n * step;
       still.push_back(turning[i]);
     }
@@ -89,18 +93,20 @@ std::optional<RotationRange> widest_rotation(const Evaluator& evaluator, const B
         const Vector3 share = Vector3(i + 0.5, j + 0.5, k + 0.5) / kPlaces;
         all.add(extent.lower + share.cwiseProduct(extent.upper - extent.lower));
       }
-  const std::vector<char> free = turner.free_at(all, 0);
+  const std::vector<std::string> stopped = turner.stopped_at(all, 0);
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (free[i]) places.add(all[i]);
+    if (stopped[i].empty()) places.add(all[i]);
   if (places.size() == 0) return std::nullopt;
 
-  const std::vector<double> up = turn_all(turner, places, step), down = turn_all(turner, places, -step);
+  const std::vector<double> up = turn_all(turner, places, step),
+                            down = turn_all(turner, places, -step);
   std::size_t widest = 0;
   for (std::size_t i = 1; i < places.size(); ++i)
     if (up[i] - down[i] > up[widest] - down[widest] + 1e-12) widest = i;
-  RotationRange range{static_cast<char>('A' + axis), places[widest], down[widest], up[widest]};
-  if (range.max + step < M_PI) range.max = turner.bisect(range.at, range.max, range.max + step);
-  if (range.min - step > -M_PI) range.min = turner.bisect(range.at, range.min, range.min - step);
+  RotationRange range{
+      static_cast<char>('A' + axis), places[widest], down[widest], up[widest], "", ""};
+  range.max_limit = turner.find_end(range.at, range.max, step);
+  range.min_limit = turner.find_end(range.at, range.min, -step);
   poses += turner.poses();
   return range;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "kinematics/evaluate.hpp"
 #include "kinematics/region.hpp"
@@ -9,9 +10,11 @@ namespace polyglide {
 
 /// How far a platform with one rotation turns.
 struct RotationRange {
-  char axis = 'A';                ///< about base x, y or z: A, B, C
-  Vector3 at = Vector3::Zero();   ///< tool displacement from home [m]
-  double min = 0, max = 0;        ///< [rad] about home orientation
+  char axis = 'A';               ///< about base x, y or z: A, B, C
+  Vector3 at = Vector3::Zero();  ///< tool displacement from home [m]
+  double min = 0, max = 0;       ///< [rad] about home orientation
+  std::string min_limit,
+      max_limit;  ///< what stops it there: a limit or "singularity"; "" at half a turn
 };
 
 /// The widest range of rotation over a coarse grid of places in `extent`, each

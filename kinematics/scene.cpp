@@ -27,14 +27,22 @@ void append_pose(Json& list, const Transform& body) {
 
 const char* type_name(JointType type) {
   switch (type) {
-    case JointType::revolute: return "revolute";
-    case JointType::prismatic: return "prismatic";
-    case JointType::helical: return "helical";
-    case JointType::cylindrical: return "cylindrical";
-    case JointType::universal: return "universal";
-    case JointType::spherical: return "spherical";
-    case JointType::planar: return "planar";
-    case JointType::weld: return "weld";
+    case JointType::revolute:
+      return "revolute";
+    case JointType::prismatic:
+      return "prismatic";
+    case JointType::helical:
+      return "helical";
+    case JointType::cylindrical:
+      return "cylindrical";
+    case JointType::universal:
+      return "universal";
+    case JointType::spherical:
+      return "spherical";
+    case JointType::planar:
+      return "planar";
+    case JointType::weld:
+      return "weld";
   }
   return "";
 }
@@ -49,8 +57,12 @@ bool is_point(const Joint& joint) {
 class SceneWriter {
  public:
   SceneWriter(const Machine& machine, int nodes)
-      : machine_(machine), model_(machine.model), mechanism_(machine.model.mechanism), nodes_(nodes),
-        joints_of_(mechanism_.bodies.size()), shown_(mechanism_.bodies.size(), -1),
+      : machine_(machine),
+        model_(machine.model),
+        mechanism_(machine.model.mechanism),
+        nodes_(nodes),
+        joints_of_(mechanism_.bodies.size()),
+        shown_(mechanism_.bodies.size(), -1),
         drawn_(mechanism_.bodies.size(), false) {
     for (int j = 0; j < static_cast<int>(mechanism_.joints.size()); ++j)
       for (int body : mechanism_.joints[j].bodies) joints_of_[body].push_back(j);
@@ -103,7 +115,8 @@ class SceneWriter {
       const int guide = b == mechanism_.base || b == mechanism_.platform ? -1 : guide_of(b);
       if (guide < 0) continue;
       const Joint& joint = mechanism_.joints[guide];
-      const Vector3 axis = joint.bodies[0] == mechanism_.base ? joint.axes[0] : Vector3(-joint.axes[0]);
+      const Vector3 axis =
+          joint.bodies[0] == mechanism_.base ? joint.axes[0] : Vector3(-joint.axes[0]);
       show(b, {{"drive", drive_of(guide)}, {"direction", json_of(axis)}});
     }
     if (mechanism_.platform != mechanism_.base) show(mechanism_.platform, "table");
@@ -166,9 +179,12 @@ class SceneWriter {
   void draw() {
     for (int b = 0; b < static_cast<int>(mechanism_.bodies.size()); ++b) {
       if (shown_[b] < 0) continue;
-      if (b == mechanism_.platform) draw_platform();
-      else if (b == mechanism_.base) draw_base();
-      else draw_body(b);
+      if (b == mechanism_.platform)
+        draw_platform();
+      else if (b == mechanism_.base)
+        draw_base();
+      else
+        draw_body(b);
     }
   }
 
@@ -217,7 +233,9 @@ class SceneWriter {
       spread.col(static_cast<Eigen::Index>(i)) = points[i] - centre;
     const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(spread, Eigen::ComputeFullU);
     const Vector3 u = svd.matrixU().col(0), v = svd.matrixU().col(1);
-    const auto angle = [&](const Vector3& p) { return std::atan2((p - centre).dot(v), (p - centre).dot(u)); };
+    const auto angle = [&](const Vector3& p) {
+      return std::atan2((p - centre).dot(v), (p - centre).dot(u));
+    };
     std::stable_sort(points.begin(), points.end(),
                      [&](const Vector3& a, const Vector3& b) { return angle(a) < angle(b); });
     const std::size_t edges = points.size() == 2 ? 1 : points.size();
@@ -252,7 +270,8 @@ class SceneWriter {
   Range range_of(const Joint& joint, int index) const {
     Range range;
     if (index < static_cast<int>(joint.range.size())) range = joint.range[index];
-    const bool slides = joint.type == JointType::prismatic || (joint.type == JointType::cylindrical && index == 1) ||
+    const bool slides = joint.type == JointType::prismatic ||
+                        (joint.type == JointType::cylindrical && index == 1) ||
                         (joint.type == JointType::planar && index < 2);
     const double sensible = slides ? 0.6 * model_.size : M_PI / 3;
     if (std::isinf(range.min)) range.min = std::min(-sensible, range.max - sensible);
@@ -272,8 +291,35 @@ class SceneWriter {
     return samples;
   }
 
+  /// Largest part of all drives' ranges, scaled about home, within which drives can be
+  /// set independently: of its corners nine in ten can be assembled.
+  double free_part(const std::vector<Range>& ranges) const {
+    constexpr std::size_t kMostCorners = 64;
+    const std::size_t corners =
+        std::min(kMostCorners, std::size_t{1} << std::min<std::size_t>(ranges.size(), 6));
+    for (double part : {1.0, 0.75, 0.5, 0.35, 0.25, 0.15, 0.1}) {
+      std::size_t failed = 0;
+      for (std::size_t corner = 0; corner < corners && 10 * failed <= corners; ++corner) {
+        Eigen::VectorXd drives(static_cast<Eigen::Index>(ranges.size()));
+        for (std::size_t d = 0; d < ranges.size(); ++d)
+          drives[static_cast<Eigen::Index>(d)] =
+              part * ((corner >> d % 6 & 1) != 0 ? ranges[d].max : ranges[d].min);
+        Posture posture = home(model_);
+        failed += !solve_forward_from(machine_, drives, posture);
+      }
+      if (10 * failed <= corners) return part;
+    }
+    return 0.1;
+  }
+
   void add_drives(Json& scene) {
     const int drives = static_cast<int>(model_.drives.size());
+    std::vector<Range> ranges;
+    for (int drive : model_.drives) {
+      const Freedom& freedom = model_.freedoms[drive];
+      ranges.push_back(range_of(mechanism_.joints[freedom.joint], freedom.index));
+    }
+    const double part = tables_.empty() ? 1 : free_part(ranges);
     int count = drives == 0 ? 1 : static_cast<int>(std::pow(nodes_, 1.0 / drives) + 1e-9);
     count = std::clamp(count, 1, 61);
     if (count > 1 && count % 2 == 0) --count;  // odd, so that home is in the middle
@@ -281,7 +327,7 @@ class SceneWriter {
     for (int d = 0; d < drives; ++d) {
       const Freedom& freedom = model_.freedoms[model_.drives[d]];
       const Joint& joint = mechanism_.joints[freedom.joint];
-      const Range range = range_of(joint, freedom.index);
+      const Range range{part * ranges[d].min, part * ranges[d].max};
       samples_.push_back(samples_of(range, count));
       Json samples = Json::array();
       for (double& sample : samples_.back()) samples.push_back(sample = tidy(sample));
@@ -309,9 +355,12 @@ class SceneWriter {
         values[static_cast<Eigen::Index>(d)] = samples_[d][node % samples_[d].size()];
       return values;
     };
+    constexpr char kMostTrials = 2;  // from different neighbours; a failure is slow
+    std::vector<char> trials(total, 0);
     std::deque<std::pair<std::size_t, Posture>> queue;
     const auto reach = [&](std::size_t node, Posture posture) {
-      if (!found[node].is_null() || !solve_forward_from(machine_, drives_at(node), posture)) return;
+      if (!found[node].is_null() || trials[node]++ >= kMostTrials) return;
+      if (!solve_forward_from(machine_, drives_at(node), posture)) return;
       found[node] = Json::array();
       for (int body : tables_) append_pose(found[node], posture.bodies[body]);
       queue.emplace_back(node, std::move(posture));
@@ -366,7 +415,8 @@ void add_mode(nlohmann::ordered_json& scene, const FreedomMode& mode, const Mech
   for (const std::vector<Transform>& bodies : mode.frames) {
     Json frame = Json::array();
     for (const Json& shown : scene.at("bodies")) {
-      const auto name = std::find(mechanism.bodies.begin(), mechanism.bodies.end(), shown.at("name"));
+      const auto name =
+          std::find(mechanism.bodies.begin(), mechanism.bodies.end(), shown.at("name"));
       if (name == mechanism.bodies.end())
         throw std::invalid_argument("add_mode: the scene is of another mechanism");
       Json pose = Json::array();

@@ -13,7 +13,8 @@ Bounds leg_bounds(const Model& model, const Leg& leg, const Eigen::Matrix3d& rot
   const Vector3& tool = model.mechanism.tool;
   const Vector3 offset = tool + rotation * (leg.platform_point - tool) - leg.base_point;
   const double unlimited = kUnlimited * (model.size + leg.length);
-  const double min = std::max(leg.stroke.min, -unlimited), max = std::min(leg.stroke.max, unlimited);
+  const double min = std::max(leg.stroke.min, -unlimited),
+               max = std::min(leg.stroke.max, unlimited);
   Bounds bounds;
   if (leg.kind == Leg::Kind::strut) {
     bounds.lower.setConstant(-(leg.length + max));

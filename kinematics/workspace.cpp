@@ -36,7 +36,8 @@ std::vector<double> spread(double lower, double upper, int count) {
   return values;
 }
 
-std::vector<Slice> make_slices(const Probe& probe, const Region& region, const Bounds& extent, int count) {
+std::vector<Slice> make_slices(const Probe& probe, const Region& region, const Bounds& extent,
+                               int count) {
   const int longest = probe.evaluator().closed_form() ? 40 : 11;
   const Vector3 size = extent.upper - extent.lower;
   const double step = std::max(size.x(), size.y()) / longest;
@@ -45,8 +46,10 @@ std::vector<Slice> make_slices(const Probe& probe, const Region& region, const B
   };
   std::vector<Slice> slices;
   for (double z : spread(extent.lower.z(), extent.upper.z(), size.z() > 0 ? count : 1)) {
-    Slice slice{z, spread(extent.lower.x(), extent.upper.x(), samples(size.x())),
-                spread(extent.lower.y(), extent.upper.y(), samples(size.y())), {}};
+    Slice slice{z,
+                spread(extent.lower.x(), extent.upper.x(), samples(size.x())),
+                spread(extent.lower.y(), extent.upper.y(), samples(size.y())),
+                {}};
     Points points;
     for (double y : slice.y)
       for (double x : slice.x) points.add({x, y, z});
@@ -60,7 +63,8 @@ std::vector<Slice> make_slices(const Probe& probe, const Region& region, const B
   return slices;
 }
 
-void take_measure(Workspace& result, const Probe& probe, const Region& region, const Measure& measured) {
+void take_measure(Workspace& result, const Probe& probe, const Region& region,
+                  const RegionMeasure& measured) {
   result.global_conditioning = measured.mean;
   result.worst = measured.worst;
   result.best = measured.best;
@@ -73,7 +77,8 @@ void take_measure(Workspace& result, const Probe& probe, const Region& region, c
   if (!active[0] || !active[1]) return;
   const double thickness = active[2] ? region.grid.step : 1;
   for (std::size_t k = 0; k < measured.layers.size(); ++k) {
-    const double z = active[2] ? region.grid.origin.z() + (static_cast<double>(k) + 0.5) * thickness : 0;
+    const double z =
+        active[2] ? region.grid.origin.z() + (static_cast<double>(k) + 0.5) * thickness : 0;
     result.area_by_z.emplace_back(z, measured.layers[k] / thickness);
   }
 }
@@ -84,18 +89,19 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
   const auto start = std::chrono::steady_clock::now();
   const Evaluator evaluator(machine, options.ignored);
   Probe probe(evaluator, options.rotation);
-  const Fineness fineness = fineness_for(options.accuracy, evaluator.closed_form());
+  const RegionFineness fineness = region_fineness(options.accuracy, evaluator.closed_form());
 
   Workspace result;
   result.characteristic_length = machine.task.characteristic_length;
   const Region region = explore(probe, fineness.nodes);
   if (!region.empty) {
-    take_measure(result, probe, region, measure(probe, region, fineness, options.accuracy));
+    take_measure(result, probe, region, measure_region(probe, region, fineness, options.accuracy));
     const Boundary boundary = find_boundary(probe, region, fineness.bisections);
     result.limits_hit = boundary.limits;
     result.lower = boundary.extent.lower;
     result.upper = boundary.extent.upper;
-    if (!options.volume_only) result.slices = make_slices(probe, region, boundary.extent, options.slices);
+    if (!options.volume_only)
+      result.slices = make_slices(probe, region, boundary.extent, options.slices);
   }
   if (!region.empty && (!options.volume_only || options.box || options.cylinder)) {
     const Inscriber inscriber(probe, region);
@@ -111,8 +117,8 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
   result.poses = probe.poses();
   if (!region.empty && !options.volume_only && machine.task.translations == 3) {
     const double degrees = evaluator.closed_form() ? 1 : 5;
-    result.rotation_range =
-        widest_rotation(evaluator, {result.lower, result.upper}, degrees * M_PI / 180, result.poses);
+    result.rotation_range = widest_rotation(evaluator, {result.lower, result.upper},
+                                            degrees * M_PI / 180, result.poses);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

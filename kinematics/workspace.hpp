@@ -13,12 +13,12 @@
 namespace polyglide {
 
 struct WorkspaceOptions {
-  std::vector<std::string> ignored;  ///< limits that do not count
+  std::vector<std::string> ignored;                              ///< limits that do not count
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< orientation of the platform
-  double accuracy = 5e-4;            ///< relative uncertainty of the volume aimed at
-  int slices = 9;                    ///< horizontal slices kept for maps
-  bool volume_only = false;          ///< skip shapes, slices and rotation range: for tuning
-  std::optional<Vector3> box;        ///< also: does a box of this size fit, and where [m]
+  double accuracy = 5e-4;      ///< relative uncertainty of the volume aimed at
+  int slices = 9;              ///< horizontal slices kept for maps
+  bool volume_only = false;    ///< skip shapes, slices and rotation range: for tuning
+  std::optional<Vector3> box;  ///< also: does a box of this size fit, and where [m]
   std::optional<std::pair<double, double>> cylinder;  ///< also: does diameter × height fit [m]
 };
 
@@ -35,8 +35,8 @@ struct Workspace {
   double volume_lower = 0, volume_upper = 0;  ///< cells wholly in / not wholly out by sampling
   Vector3 lower = Vector3::Zero(), upper = Vector3::Zero();  ///< bounding box of reachable cells
   std::vector<std::pair<double, double>> area_by_z;
-  Cylinder inscribed_cylinder;  ///< largest volume
-  Box inscribed_box;            ///< largest volume
+  Cylinder inscribed_cylinder;      ///< largest volume
+  Box inscribed_box;                ///< largest volume
   std::vector<Cylinder> cylinders;  ///< largest height for a series of diameters
   double global_conditioning = 0, worst = 0, best = 0;  ///< mean, least and greatest 1/κ
   double characteristic_length = 0;
@@ -44,15 +44,16 @@ struct Workspace {
   std::vector<Slice> slices;
   using RotationRange = polyglide::RotationRange;
   std::optional<RotationRange> rotation_range;  ///< widest found, for 3T1R machines
-  std::optional<Box> asked_box;            ///< where the asked box fits
-  std::optional<Cylinder> asked_cylinder;  ///< where the asked cylinder fits
+  std::optional<Box> asked_box;                 ///< where the asked box fits
+  std::optional<Cylinder> asked_cylinder;       ///< where the asked cylinder fits
   std::size_t poses = 0;
   double seconds = 0;
 };
 
 /// Volume, slices, inscribed shapes, conditioning and the limits that bound the
 /// workspace. Same bits for any thread count.
-[[nodiscard]] Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& options = {});
+[[nodiscard]] Workspace compute_workspace(const Machine& machine,
+                                          const WorkspaceOptions& options = {});
 
 /// The `workspace --json` document.
 [[nodiscard]] nlohmann::ordered_json to_json(const Workspace& workspace);

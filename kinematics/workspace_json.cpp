@@ -22,7 +22,9 @@ Json json_of(const Cylinder& cylinder) {
           {"center", json_of(cylinder.center)}};
 }
 
-Json json_of(const Box& box) { return {{"size", json_of(box.size)}, {"center", json_of(box.center)}}; }
+Json json_of(const Box& box) {
+  return {{"size", json_of(box.size)}, {"center", json_of(box.center)}};
+}
 
 Json json_of(const std::vector<double>& values) {
   Json list = Json::array();
@@ -40,7 +42,10 @@ Json json_of(const Slice& slice) {
     }
     rows.push_back(std::move(row));
   }
-  return {{"plane", "xy"}, {"at", tidy(slice.z)}, {"u", json_of(slice.x)}, {"v", json_of(slice.y)},
+  return {{"plane", "xy"},
+          {"at", tidy(slice.z)},
+          {"u", json_of(slice.x)},
+          {"v", json_of(slice.y)},
           {"values", std::move(rows)}};
 }
 
@@ -52,11 +57,13 @@ Json to_json(const Workspace& workspace) {
   json["volume_bounds"] = {workspace.volume_lower, workspace.volume_upper};
   json["extent"] = {{"lower", json_of(workspace.lower)}, {"upper", json_of(workspace.upper)}};
   json["area_by_z"] = Json::array();
-  for (const auto& [z, area] : workspace.area_by_z) json["area_by_z"].push_back({tidy(z), tidy(area)});
+  for (const auto& [z, area] : workspace.area_by_z)
+    json["area_by_z"].push_back({tidy(z), tidy(area)});
   json["inscribed_cylinder"] = json_of(workspace.inscribed_cylinder);
   json["inscribed_box"] = json_of(workspace.inscribed_box);
   json["cylinders"] = Json::array();
-  for (const Cylinder& cylinder : workspace.cylinders) json["cylinders"].push_back(json_of(cylinder));
+  for (const Cylinder& cylinder : workspace.cylinders)
+    json["cylinders"].push_back(json_of(cylinder));
   json["conditioning"] = {{"global", workspace.global_conditioning},
                           {"worst", workspace.worst},
                           {"best", workspace.best}};
@@ -65,7 +72,9 @@ Json to_json(const Workspace& workspace) {
     json["rotation_range"] = {{"axis", std::string(1, range->axis)},
                               {"at", json_of(range->at)},
                               {"min", range->min},
-                              {"max", range->max}};
+                              {"max", range->max},
+                              {"min_limit", range->min_limit},
+                              {"max_limit", range->max_limit}};
   json["limits_hit"] = workspace.limits_hit;
   json["slices"] = Json::array();
   for (const Slice& slice : workspace.slices) json["slices"].push_back(json_of(slice));
