@@ -31,6 +31,9 @@ int run_check(CommandLine& line);
 int run_pose(CommandLine& line);
 int run_workspace(CommandLine& line);
 int run_enumerate(CommandLine& line);
+int run_design(CommandLine& line);
+int run_optimize(CommandLine& line);
+int run_report(CommandLine& line);
 int run_export(CommandLine& line);
 
 }  // namespace polyglide
