@@ -18,7 +18,7 @@ function row(entry, selection, columns, bestScore) {
     title: stored ? "Show this layout below" : "No details are stored for this layout" },
     el("td", { class: "num rank" }, String(entry.rank)),
     el("td", { class: "thumb" }, stored?.scene ? thumbnail(stored.scene) : null),
-    el("td", {}, el("b", {}, entry.title || stored?.title || entry.layout), el("br"),
+    el("td", { class: "name" }, el("b", {}, entry.title || stored?.title || entry.layout), el("br"),
       el("small", {}, [entry.known_as, entry.layout].filter(Boolean).join(" · "))),
     el("td", {}, number(entry.score, 3), bar(entry.score / bestScore, "score"),
       typeof entry.initial_score === "number" && el("small", {}, "before\u00a0", number(entry.initial_score, 3))),
