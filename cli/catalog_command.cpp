@@ -75,9 +75,8 @@ void print_entry(const ChosenMachine& machine) {
   std::cout << layout.name << ": " << layout.title << "\n";
   if (!layout.source.empty()) std::cout << "source: " << layout.source << "\n";
   if (!layout.about.empty()) std::cout << layout.about << "\n";
-  std::cout << fmt::format("{} bodies, {} joints, {} drives: {}\n", mechanism.bodies.size(),
-                           mechanism.joints.size(), drive_names(mechanism).size(),
-                           fmt::join(drive_names(mechanism), " "));
+  std::cout << fmt::format("bodies: {}, joints: {}, drives: {}\n", mechanism.bodies.size(),
+                           mechanism.joints.size(), fmt::join(drive_names(mechanism), " "));
   std::vector<std::vector<std::string>> rows;
   for (const Parameter& parameter : layout.parameters) {
     rows.push_back({"  " + parameter.name,

@@ -46,7 +46,9 @@ CommandLine::CommandLine(std::string_view name, std::string_view about,
   app_.add_option("--threads", threads_, "Use at most N threads; results do not depend on it")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
-  app_.add_option("--seed", seed_, "Seed of everything random (default 1)")->type_name("N");
+  app_.add_option("--seed", seed_, "Seed of everything random (default 1)")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N");
   app_.add_flag("--quiet", quiet_, "No progress and no remarks on standard error");
 }
 

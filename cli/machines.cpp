@@ -21,12 +21,12 @@ std::pair<std::string, double> parse_setting(const std::string& setting) {
   if (equals == std::string::npos || equals == 0) {
     throw InputError({wrong_argument(setting, "--set takes parameter=value")});
   }
-  const std::vector<double> value =
-      parse_numbers(std::string_view(setting).substr(equals + 1), "--set " + setting);
+  const std::string name = setting.substr(0, equals);
+  const std::vector<double> value = parse_numbers(setting.substr(equals + 1), "--set " + name);
   if (value.size() != 1) {
-    throw InputError({wrong_argument(setting, "--set takes one number")});
+    throw InputError({wrong_argument(setting, "--set takes one number for a parameter")});
   }
-  return {setting.substr(0, equals), value.front()};
+  return {name, value.front()};
 }
 
 }  // namespace

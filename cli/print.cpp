@@ -59,6 +59,7 @@ std::string columns(const std::vector<std::vector<std::string>>& rows) {
       text += row[i];
       if (i + 1 < row.size()) text.append(widths[i] - width(row[i]) + 2, ' ');
     }
+    text.erase(text.find_last_not_of(' ') + 1);  // an empty last column
     text += '\n';
   }
   return text;
