@@ -179,7 +179,8 @@ Region explore(Probe& probe, int nodes) {
   Points home;
   home.add(Vector3::Zero());
   for (int look = 0; found.empty && look < 8 && probe.all_inside(home); ++look) {
-    box = {box.lower / 4, box.upper / 4};
+    const Vector3 half = box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs()) / 4;
+    box = {box.lower.cwiseMax(-half), box.upper.cwiseMin(half)};
     found = explore(probe, box, std::min(nodes, kCoarse));
   }
   if (found.empty) return found;
