@@ -90,6 +90,7 @@ void Evaluator::evaluate_legs(const PoseBatch& poses, BatchResult& result) const
   const LegKernel::Oriented oriented = kernel_->orient(poses.rotation);
   in_blocks(poses.size(), 8 * LegKernel::kBlock, [&](std::size_t first, std::size_t last) {
     LegKernel::Block block;
+    block.conditioning = poses.conditioning;
     for (std::size_t i = first; i < last; i += LegKernel::kBlock) {
       block.count = static_cast<int>(std::min<std::size_t>(LegKernel::kBlock, last - i));
       block.x = &poses.x[i];

@@ -12,6 +12,7 @@ namespace polyglide {
 struct PoseBatch {
   std::vector<double> x, y, z;  ///< tool displacement from home [m]
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< common to the batch
+  bool conditioning = true;  ///< false: where J is square and regular, 1 may stand for 1/κ
   [[nodiscard]] std::size_t size() const { return x.size(); }
 };
 

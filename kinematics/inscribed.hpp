@@ -4,21 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "kinematics/region.hpp"
+#include "kinematics/largest_disc.hpp"
+#include "kinematics/shapes.hpp"
 
 namespace polyglide {
-
-/// Upright cylinder of tool displacements.
-struct Cylinder {
-  double diameter = 0, height = 0;  ///< [m], axis vertical
-  Vector3 center = Vector3::Zero();
-};
-
-/// Box of tool displacements, edges along base x, y, z.
-struct Box {
-  Vector3 size = Vector3::Zero();  ///< [m]
-  Vector3 center = Vector3::Zero();
-};
 
 /// Finds shapes that lie wholly inside a region.
 ///
@@ -50,13 +39,12 @@ class Inscriber {
   struct Interval {
     int low = 0, high = 0;
     std::vector<char> mask;
-    double radius = 0, x = 0, y = 0;  ///< [m], to the nearest node outside
+    GridDisc disc;
   };
   using CylinderGain = std::function<double(double radius, double height)>;
   using BoxGain = std::function<double(const Vector3& size)>;
 
   void add_intervals();
-  void find_disc(Interval& interval) const;
   [[nodiscard]] const Interval* best_interval(const CylinderGain& gain) const;
   [[nodiscard]] Cylinder grid_cylinder(const Interval& interval) const;
   [[nodiscard]] Cylinder tallest(double diameter, double enough) const;

@@ -17,15 +17,18 @@ batch::Vector vector_of(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 signed char sign_of(double value) { return static_cast<signed char>((value > 0) - (value < 0)); }
 
-/// Determinant of the first n rows and columns; fixed sizes for the common ones.
-double determinant(const Eigen::Matrix<double, Eigen::Dynamic, batch::kMost>& jacobian, int n) {
-  switch (n) {
+using Jacobian =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, Eigen::Dynamic, batch::kMost>;
+
+/// Fixed sizes for the common ones.
+double determinant(const Jacobian& jacobian) {
+  switch (jacobian.cols()) {
     case 4:
       return jacobian.topLeftCorner<4, 4>().determinant();
     case 6:
       return jacobian.topLeftCorner<6, 6>().determinant();
     default:
-      return jacobian.topLeftCorner(n, n).determinant();
+      return jacobian.determinant();
   }
 }
 
@@ -197,25 +200,30 @@ void LegKernel::solve_leg(const Row& row, const Vector3& offset, const Oriented&
 }
 
 void LegKernel::condition_translations(Block& block) const {
-  batch::condition3(block.count, drives_, block.rows.data(), block.inverse_condition);
+  const bool square = drives_ == 3;
+  if (block.conditioning || !square)
+    batch::condition3(block.count, drives_, block.rows.data(), block.inverse_condition);
   std::fill_n(block.orientation, block.count, static_cast<signed char>(0));
-  if (drives_ != 3) return;
+  if (!square) return;
   double det[kBlock];
   batch::determinant3(block.count, block.rows.data(), det);
   for (int i = 0; i < block.count; ++i) block.orientation[i] = sign_of(det[i]);
+  if (!block.conditioning)
+    for (int i = 0; i < block.count; ++i) block.inverse_condition[i] = det[i] != 0;
 }
 
 void LegKernel::condition(const Oriented& oriented, Block& block) const {
   const std::vector<int>& axes = machine_.task.axes;
   const int n = static_cast<int>(axes.size());
+  const bool square = drives_ == n, conditioning = block.conditioning || !square;
   const double scale = 1 / machine_.task.characteristic_length;
   batch::Grams grams;
   double inverse[batch::kLanes];
-  Eigen::Matrix<double, Eigen::Dynamic, batch::kMost> jacobian(drives_, batch::kMost);
-  jacobian.setZero();
+  Jacobian jacobian(drives_, n);
   for (int begin = 0; begin < block.count; begin += batch::kLanes) {
     const int lanes = std::min(batch::kLanes, block.count - begin);
     std::fill_n(&grams.entry[0][0][0], batch::kMost * batch::kMost * batch::kLanes, 0.0);
+    std::fill_n(inverse, batch::kLanes, 1.0);
     for (int i = 0; i < lanes; ++i) {
       block.orientation[begin + i] = 0;
       if (block.code[begin + i] >= 0) continue;
@@ -225,12 +233,14 @@ void LegKernel::condition(const Oriented& oriented, Block& block) const {
         const Vector3 moment = oriented.arms[d].cross(force) * scale;
         for (int k = 0; k < n; ++k)
           jacobian(d, k) = axes[k] < 3 ? force[axes[k]] : moment[axes[k] - 3];
-        for (int k = 0; k < n; ++k)
+        for (int k = 0; conditioning && k < n; ++k)
           for (int l = k; l < n; ++l) grams.entry[k][l][i] += jacobian(d, k) * jacobian(d, l);
       }
-      if (drives_ == n) block.orientation[begin + i] = sign_of(determinant(jacobian, n));
+      if (!square) continue;
+      block.orientation[begin + i] = sign_of(determinant(jacobian));
+      if (!conditioning) inverse[i] = block.orientation[begin + i] != 0;
     }
-    batch::condition_n(n, grams, inverse);
+    if (conditioning) batch::condition_n(n, grams, inverse);
     std::copy_n(inverse, lanes, block.inverse_condition + begin);
   }
 }

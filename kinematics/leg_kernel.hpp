@@ -37,6 +37,7 @@ class LegKernel {
   /// carriage places and strut strokes from home, meaningless where not reachable.
   struct Block {
     int count = 0;
+    bool conditioning = true;  ///< as in PoseBatch
     const double *x = nullptr, *y = nullptr, *z = nullptr;
     int* limit = nullptr;
     double* inverse_condition = nullptr;

@@ -127,8 +127,8 @@ Probe::Probe(const Evaluator& evaluator, const Eigen::Quaterniond& rotation)
   if (result.limit[0] < 0 && result.inverse_condition[0] > kSingular) side_ = result.orientation[0];
 }
 
-Probe::Answers Probe::ask(const Points& points) const {
-  PoseBatch batch{points.x, points.y, points.z, rotation_};
+Probe::Answers Probe::ask(const Points& points, bool conditioning) const {
+  const PoseBatch batch{points.x, points.y, points.z, rotation_, conditioning};
   BatchResult result;
   evaluator_.evaluate(batch, result);
   poses_ += points.size();
@@ -142,7 +142,7 @@ Probe::Answers Probe::ask(const Points& points) const {
 }
 
 bool Probe::all_inside(const Points& points) const {
-  const Answers answers = ask(points);
+  const Answers answers = ask(points, false);
   return std::all_of(answers.limit.begin(), answers.limit.end(),
                      [](int limit) { return limit < 0; });
 }

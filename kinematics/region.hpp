@@ -35,7 +35,7 @@ class Probe {
     std::vector<signed char> orientation;
     [[nodiscard]] bool inside(std::size_t i) const { return limit[i] < 0; }
   };
-  [[nodiscard]] Answers ask(const Points& points) const;
+  [[nodiscard]] Answers ask(const Points& points, bool conditioning = true) const;
   [[nodiscard]] bool all_inside(const Points& points) const;
 
   /// Limit names of the evaluator, then "singularity" and "search box".

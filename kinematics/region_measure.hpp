@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <string>
 #include <vector>
 
 #include "kinematics/region.hpp"
@@ -38,12 +36,5 @@ struct RegionMeasure {
 /// faces parallel to the grid do no harm.
 [[nodiscard]] RegionMeasure measure_region(const Probe& probe, const Region& region,
                                            const RegionFineness& fineness, double accuracy);
-
-/// The boundary where grid edges cross it, found by bisection.
-struct Boundary {
-  std::map<std::string, double> limits;  ///< share of crossings by the limit met first outside
-  Bounds extent;                         ///< of the crossings
-};
-[[nodiscard]] Boundary find_boundary(const Probe& probe, const Region& region, int bisections);
 
 }  // namespace polyglide

@@ -17,7 +17,7 @@ class Turner {
   std::vector<std::string> stopped_at(const Points& places, double angle) {
     Probe probe(evaluator_, turned(angle));
     probe.set_side(side_);
-    const Probe::Answers answers = probe.ask(places);
+    const Probe::Answers answers = probe.ask(places, false);
     poses_ += places.size();
     std::vector<std::string> limits(places.size());
     for (std::size_t i = 0; i < limits.size(); ++i)

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <stdexcept>
+
+#include "kinematics/pose_table.hpp"
 
 namespace polyglide {
 namespace {
@@ -77,8 +78,7 @@ class SceneWriter {
     scene["joints"] = joints();
     scene["tool"] = json_of(mechanism_.tool);
     scene["platform"] = shown_[mechanism_.platform];
-    add_drives(scene);
-    scene["poses"] = poses();
+    add_table(scene);
     return scene;
   }
 
@@ -195,7 +195,7 @@ class SceneWriter {
       const Joint& joint = mechanism_.joints[j];
       if (is_point(joint)) feet.push_back(joint.at);
       if (joint.type != JointType::prismatic) continue;
-      const Range range = range_of(joint, 0);
+      const Range range = drawing_range(model_, j, 0);
       segment("guide", joint.name, 0, joint.at + range.min * joint.axes[0], 0,
               joint.at + range.max * joint.axes[0]);
     }
@@ -266,129 +266,27 @@ class SceneWriter {
     return list;
   }
 
-  /// The range of a freedom; an unlimited side ends where a drawing stays sensible.
-  Range range_of(const Joint& joint, int index) const {
-    Range range;
-    if (index < static_cast<int>(joint.range.size())) range = joint.range[index];
-    const bool slides = joint.type == JointType::prismatic ||
-                        (joint.type == JointType::cylindrical && index == 1) ||
-                        (joint.type == JointType::planar && index < 2);
-    const double sensible = slides ? 0.6 * model_.size : M_PI / 3;
-    if (std::isinf(range.min)) range.min = std::min(-sensible, range.max - sensible);
-    if (std::isinf(range.max)) range.max = std::max(sensible, range.min + sensible);
-    return range;
-  }
-
-  /// Evenly over the range, with home among them.
-  static std::vector<double> samples_of(const Range& range, int count) {
-    std::vector<double> samples;
-    for (int i = 0; i < count; ++i)
-      samples.push_back(count == 1 ? 0 : range.min + (range.max - range.min) * i / (count - 1));
-    const auto nearest = std::min_element(samples.begin(), samples.end(), [](double a, double b) {
-      return std::abs(a) < std::abs(b);
-    });
-    if (range.min <= 0 && range.max >= 0) *nearest = 0;
-    return samples;
-  }
-
-  /// Largest part of all drives' ranges, scaled about home, within which drives can be
-  /// set independently: of its corners nine in ten can be assembled.
-  double free_part(const std::vector<Range>& ranges) const {
-    constexpr std::size_t kMostCorners = 64;
-    const std::size_t corners =
-        std::min(kMostCorners, std::size_t{1} << std::min<std::size_t>(ranges.size(), 6));
-    for (double part : {1.0, 0.75, 0.5, 0.35, 0.25, 0.15, 0.1}) {
-      std::size_t failed = 0;
-      for (std::size_t corner = 0; corner < corners && 10 * failed <= corners; ++corner) {
-        Eigen::VectorXd drives(static_cast<Eigen::Index>(ranges.size()));
-        for (std::size_t d = 0; d < ranges.size(); ++d)
-          drives[static_cast<Eigen::Index>(d)] =
-              part * ((corner >> d % 6 & 1) != 0 ? ranges[d].max : ranges[d].min);
-        Posture posture = home(model_);
-        failed += !solve_forward_from(machine_, drives, posture);
-      }
-      if (10 * failed <= corners) return part;
-    }
-    return 0.1;
-  }
-
-  void add_drives(Json& scene) {
-    const int drives = static_cast<int>(model_.drives.size());
-    std::vector<Range> ranges;
-    for (int drive : model_.drives) {
-      const Freedom& freedom = model_.freedoms[drive];
-      ranges.push_back(range_of(mechanism_.joints[freedom.joint], freedom.index));
-    }
-    const double part = tables_.empty() ? 1 : free_part(ranges);
-    int count = drives == 0 ? 1 : static_cast<int>(std::pow(nodes_, 1.0 / drives) + 1e-9);
-    count = std::clamp(count, 1, 61);
-    if (count > 1 && count % 2 == 0) --count;  // odd, so that home is in the middle
+  void add_table(Json& scene) const {
+    const PoseTable table = tabulate_poses(machine_, nodes_);
     scene["drives"] = Json::array();
-    for (int d = 0; d < drives; ++d) {
+    for (std::size_t d = 0; d < model_.drives.size(); ++d) {
       const Freedom& freedom = model_.freedoms[model_.drives[d]];
-      const Joint& joint = mechanism_.joints[freedom.joint];
-      const Range range{part * ranges[d].min, part * ranges[d].max};
-      samples_.push_back(samples_of(range, count));
       Json samples = Json::array();
-      for (double& sample : samples_.back()) samples.push_back(sample = tidy(sample));
-      scene["drives"].push_back({{"name", joint.name},
+      for (double sample : table.samples[d]) samples.push_back(tidy(sample));
+      scene["drives"].push_back({{"name", mechanism_.joints[freedom.joint].name},
                                  {"kind", freedom.translational ? "prismatic" : "revolute"},
                                  {"unit", freedom.translational ? "m" : "rad"},
                                  {"samples", std::move(samples)},
-                                 {"min", tidy(range.min)},
-                                 {"max", tidy(range.max)}});
+                                 {"min", tidy(table.ranges[d].min)},
+                                 {"max", tidy(table.ranges[d].max)}});
     }
-  }
-
-  /// Forward kinematics over the grid of samples, spreading from home to neighbours
-  /// so that every pose continues the assembly mode of home.
-  Json poses() const {
-    const std::size_t drives = samples_.size();
-    std::size_t total = 1;
-    for (const auto& samples : samples_) total *= samples.size();
-    std::vector<Json> found(total, nullptr);
-    if (drives == 0 || tables_.empty()) return Json::array();
-
-    const auto drives_at = [&](std::size_t node) {
-      Eigen::VectorXd values(static_cast<Eigen::Index>(drives));
-      for (std::size_t d = drives; d-- > 0; node /= samples_[d].size())
-        values[static_cast<Eigen::Index>(d)] = samples_[d][node % samples_[d].size()];
-      return values;
-    };
-    constexpr char kMostTrials = 2;  // from different neighbours; a failure is slow
-    std::vector<char> trials(total, 0);
-    std::deque<std::pair<std::size_t, Posture>> queue;
-    const auto reach = [&](std::size_t node, Posture posture) {
-      if (!found[node].is_null() || trials[node]++ >= kMostTrials) return;
-      if (!solve_forward_from(machine_, drives_at(node), posture)) return;
-      found[node] = Json::array();
-      for (int body : tables_) append_pose(found[node], posture.bodies[body]);
-      queue.emplace_back(node, std::move(posture));
-    };
-    reach(home_node(), home(model_));
-    while (!queue.empty()) {
-      const auto [node, posture] = std::move(queue.front());
-      queue.pop_front();
-      std::size_t stride = 1;
-      for (std::size_t d = drives; d-- > 0; stride *= samples_[d].size()) {
-        const std::size_t place = node / stride % samples_[d].size();
-        if (place > 0) reach(node - stride, posture);
-        if (place + 1 < samples_[d].size()) reach(node + stride, posture);
-      }
+    scene["poses"] = Json::array();
+    for (const auto& bodies : table.bodies) {
+      Json poses;
+      if (bodies)
+        for (int body : tables_) append_pose(poses, (*bodies)[body]);
+      scene["poses"].push_back(std::move(poses));
     }
-    return found;
-  }
-
-  /// The node nearest to home.
-  std::size_t home_node() const {
-    std::size_t node = 0;
-    for (const auto& samples : samples_) {
-      const auto nearest = std::min_element(samples.begin(), samples.end(), [](double a, double b) {
-        return std::abs(a) < std::abs(b);
-      });
-      node = node * samples.size() + static_cast<std::size_t>(nearest - samples.begin());
-    }
-    return node;
   }
 
   const Machine& machine_;
@@ -399,7 +297,6 @@ class SceneWriter {
   std::vector<int> shown_;   // index in `bodies` of the scene, -1 = not there
   std::vector<bool> drawn_;  // as a segment between shown bodies
   std::vector<int> tables_;
-  std::vector<std::vector<double>> samples_;
   Json bodies_ = Json::array(), segments_ = Json::array();
 };
 

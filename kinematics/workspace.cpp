@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kinematics/region_boundary.hpp"
 #include "kinematics/region_measure.hpp"
 
 namespace polyglide {
