@@ -7,7 +7,7 @@ install(DIRECTORY catalog/data catalog/schema DESTINATION ${data}/catalog COMPON
 install(DIRECTORY examples DESTINATION ${data} COMPONENT program)
 install(FILES README.md LICENSE CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT program)
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/Polyglide)
 install(EXPORT polyglide NAMESPACE polyglide:: FILE PolyglideTargets.cmake DESTINATION ${package}
