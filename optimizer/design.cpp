@@ -8,13 +8,12 @@
 #include "catalog/catalog.hpp"
 #include "catalog/json_file.hpp"
 #include "kinematics/mobility.hpp"
+#include "optimizer/design_document.hpp"
 #include "optimizer/duel.hpp"
 #include "optimizer/families.hpp"
 #include "optimizer/parallel.hpp"
-#include "optimizer/requirements.hpp"
 #include "optimizer/run_document.hpp"
 #include "optimizer/screening.hpp"
-#include "optimizer/stability.hpp"
 #include "optimizer/tuning_store.hpp"
 
 namespace polyglide {
@@ -23,7 +22,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kLookEvaluations = 40;
-constexpr std::size_t kNearest = 3;
 
 class DesignJob {
  public:
@@ -59,11 +57,6 @@ class DesignJob {
   [[nodiscard]] std::vector<const Family*> by_score(bool tuned) const;
 
   [[nodiscard]] Json document();
-  [[nodiscard]] Json requirements() const;
-  [[nodiscard]] Json counts() const;
-  [[nodiscard]] Json rank_entry(const Family& family, int rank) const;
-  [[nodiscard]] Json shown(const Family& family) const;
-  [[nodiscard]] std::string answer() const;
 
   const Brief& brief_;
   const RunOptions& options_;
@@ -209,112 +202,8 @@ void DesignJob::rank() {
   }
 }
 
-Json DesignJob::requirements() const {
-  const bool met = !ranking_.empty();
-  const std::string verdict = met ? "met" : "not met";
-  Json rows = Json::array();
-  rows.push_back({{"name", "motion"}, {"asked", motion_text(brief_)}, {"verdict", families_.empty() ? "not met" : "met"},
-                  {"note", fmt::format("{} families of layouts with this motion and a determinate verdict", families_.size())}});
-  rows.push_back({{"name", "drives"}, {"asked", std::to_string(brief_.drives)}, {"verdict", families_.empty() ? "not met" : "met"},
-                  {"note", "none superfluous"}});
-  for (Json row : requirements_json(brief_.requirements)) {
-    row["verdict"] = verdict;
-    row["note"] = met ? fmt::format("kept by all {} ranked layouts", ranking_.size()) : "kept by no tuned layout";
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-Json DesignJob::counts() const {
-  std::map<std::string, std::uint64_t> by_verdict;
-  std::size_t poses = 0, tuned = 0;
-  for (const Candidate& candidate : enumeration_.candidates) ++by_verdict[candidate.verdict()];
-  for (const Family& family : families_) {
-    poses += family.look.measures.poses;
-    if (!family.tuned) continue;
-    ++tuned;
-    poses += family.tuned->poses;
-  }
-  return {{"raw", enumeration_.raw},       {"distinct", enumeration_.candidates.size()},
-          {"by_verdict", by_verdict},      {"rejected", rejections_.counts()},
-          {"families", families_.size()},  {"tuned", tuned},
-          {"satisfying", ranking_.size()}, {"poses", poses}};
-}
-
-Json DesignJob::rank_entry(const Family& family, int rank) const {
-  const Tuned& tuned = *family.tuned;
-  std::vector<std::string> twins;
-  for (const Candidate* member : family.members)
-    if (member != family.lead) twins.push_back(member->id);
-  const Vector3& center = tuned.best.center;
-  return {{"rank", rank},
-          {"layout", family.lead->id},
-          {"known_as", name_or_null(family.known_as())},
-          {"title", family.layout.title},
-          {"score", tuned.best.score},
-          {"objectives", measures_json(tuned.best.measures)},
-          {"parameters", values_json(family.layout, tuned.best.values)},
-          {"initial_score", tuned.initial.score},
-          {"zone_center", {center.x(), center.y(), center.z()}},
-          {"variants", family.members.size()},
-          {"twins", twins}};
-}
-
-Json DesignJob::shown(const Family& family) const {
-  const Tuned& tuned = *family.tuned;
-  return layout_json({family.lead->id, family.known_as(), family.layout.title, family.lead->choices, family.layout,
-                      family.task, tuned.initial, tuned.best, tuned.search.history},
-                     brief_.requirements.zone, options_.seed);
-}
-
-std::string DesignJob::answer() const {
-  if (ranking_.empty())
-    return fmt::format("None of {} distinct layouts satisfies the brief; the nearest misses and the reasons are below.",
-                       enumeration_.candidates.size());
-  const Family& best = *ranking_.front();
-  return fmt::format("The best of {} distinct layouts is {}{}: {}. Score {:.3g}.", enumeration_.candidates.size(),
-                     best.lead->id, best.known_as().empty() ? "" : " (" + best.known_as() + ")",
-                     best.layout.title, best.tuned->best.score);
-}
-
 Json DesignJob::document() {
-  Json run{{"format", "polyglide/run/1"}, {"kind", "design"},   {"name", brief_.name}, {"title", brief_.title},
-           {"about", brief_.about},       {"answer", answer()}, {"brief", brief_.document}};
-  run["requirements"] = requirements();
-  run["counts"] = counts();
-  run["indices"] = indices_json();
-  run["ranking"] = Json::array();
-  std::vector<RankedMeasures> ranked;
-  for (const Family* family : ranking_) {
-    run["ranking"].push_back(rank_entry(*family, static_cast<int>(ranked.size()) + 1));
-    const std::string name = family->known_as().empty() ? family->lead->id : family->known_as();
-    ranked.push_back({family->lead->id, name, family->tuned->best.measures});
-  }
-  run["stability"] = stability_json(ranked, brief_.requirements.objectives);
-
-  std::vector<const Family*> full = ranking_;
-  if (full.empty()) {
-    full = by_score(true);
-    full.resize(std::min(full.size(), kNearest));
-    run["nearest"] = Json::array();
-    for (const Family* family : full) run["nearest"].push_back(rank_entry(*family, 0));
-  }
-  full.resize(std::min<std::size_t>(full.size(), static_cast<std::size_t>(brief_.report_layouts)));
-  if (brief_.duel) {
-    const Json duel = duel_json(*brief_.duel, enumeration_, families_);
-    if (!duel.is_null()) run["duel"] = duel;
-    for (const Family& family : families_)  // both sides can be looked at
-      if (!duel.is_null() && (family.lead->id == duel["a"] || family.lead->id == duel["b"]) &&
-          std::ranges::find(full, &family) == full.end())
-        full.push_back(&family);
-  }
-  run["layouts"] = Json::array();
-  for (const Family* family : full) {
-    if (options_.progress)
-      options_.progress({"measure", static_cast<double>(run["layouts"].size()), static_cast<double>(full.size())});
-    run["layouts"].push_back(shown(*family));
-  }
-  run["rejected"] = rejections_.json(space_, options_.seed);
+  Json run = design_document({brief_, options_, space_, enumeration_, rejections_, families_, by_score(true), ranking_});
   provenance_.add_hash("brief", content_hash(brief_.document.dump()));
   provenance_.add_hash("space", space_.hash);
   provenance_.add_hash("catalog", catalog_hash());

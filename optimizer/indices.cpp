@@ -194,6 +194,7 @@ Measures measure(const Evaluator& evaluator, const Requirements& requirements,
 
   Measures measures;
   measure_zone(evaluator, judge, shifted(positions, center), turns, measures);
+  if (measures.coverage < 1 && !fineness.whole) return measures;
   const Usable usable = measure_usable(evaluator, judge, fineness.volume_points);
   measures.volume = usable.volume;
   std::vector<Vector3> places = usable.extent;

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kVolumeAccuracy = 1e-3;
+constexpr double kVolumeAccuracy = 2e-3;
 
 double value_of(const Parameter& parameter, const ParameterValues& values) {
   const auto found = values.find(parameter.name);

@@ -6,6 +6,7 @@
 
 #include "kinematics/mobility.hpp"
 #include "kinematics/scene.hpp"
+#include "optimizer/parallel.hpp"
 #include "optimizer/run_document.hpp"
 
 namespace polyglide {
@@ -121,14 +122,22 @@ Json Rejections::counts() const {
   return json;
 }
 
-Json Rejections::json(const Space& space, std::uint64_t seed) const {
+Json Rejections::json(const Space& space, const RunOptions& options) const {
+  const std::vector<const Group*> groups = by_count();
+  std::vector<const Example*> examples;
+  for (const Group* group : groups)
+    for (const Example& example : group->examples) examples.push_back(&example);
+  std::vector<Json> drawn(examples.size());
+  in_parallel(static_cast<int>(examples.size()), options, "draw", [&](int i) {
+    drawn[i] = example_json(space, *examples[i]->candidate, examples[i]->sentences, options.seed);
+  });
+
   Json list = Json::array();
-  for (const Group* group : by_count()) {
-    Json examples = Json::array();
-    for (const Example& example : group->examples)
-      examples.push_back(example_json(space, *example.candidate, example.sentences, seed));
-    list.push_back(
-        {{"reason", group->reason}, {"count", group->count}, {"examples", std::move(examples)}});
+  std::size_t next = 0;
+  for (const Group* group : groups) {
+    Json of_group = Json::array();
+    for (std::size_t i = 0; i < group->examples.size(); ++i) of_group.push_back(std::move(drawn[next++]));
+    list.push_back({{"reason", group->reason}, {"count", group->count}, {"examples", std::move(of_group)}});
   }
   return list;
 }

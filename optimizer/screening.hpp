@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "optimizer/brief.hpp"
+#include "optimizer/run_options.hpp"
 #include "synthesis/enumerate.hpp"
 
 namespace polyglide {
@@ -34,7 +35,7 @@ class Rejections {
 
   /// With up to two examples each, or all known layouts where they are more, drawn with the freedom
   /// that is left. Cost: some 10 ms per example.
-  [[nodiscard]] nlohmann::ordered_json json(const Space& space, std::uint64_t seed) const;
+  [[nodiscard]] nlohmann::ordered_json json(const Space& space, const RunOptions& options) const;
 
  private:
   struct Example {

@@ -20,7 +20,7 @@ struct SearchProblem {
 struct SearchOptions {
   int evaluations = 300;      ///< calls of the function, never exceeded; at least 1
   std::uint64_t seed = 1;     ///< of the global stage
-  double global_share = 0.5;  ///< part of the evaluations for the global stage, 0..1
+  double global_share = 0.8;  ///< part of the evaluations for the global stage, 0..1
   double tolerance = 1e-4;    ///< the local stage stops at steps below this part of each range
 };
 

@@ -7,6 +7,7 @@
 #include "catalog/catalog.hpp"
 #include "catalog/expression.hpp"
 #include "catalog/json_file.hpp"
+#include "optimizer/parallel.hpp"
 #include "optimizer/requirements.hpp"
 #include "optimizer/run_document.hpp"
 
@@ -167,13 +168,17 @@ Json run_json(const Study& study, const TuneProblem& problem, const Tuned& tuned
   run["ranking"] = {rank_row(1, better, study.machine.title + ", tuned", study, tuned.best, tuned.initial.score),
                     rank_row(2, given, study.machine.title + ", as it stands", study, tuned.initial, tuned.initial.score)};
   run["duel"] = duel_json(better, given, tuned, statement);
-  run["layouts"] = Json::array();
-  for (const auto& [id, design, title] : {std::tuple(better, &tuned.best, ", tuned"),
-                                          std::tuple(given, &tuned.initial, ", as it stands")})
-    run["layouts"].push_back(layout_json({id, "", study.machine.title + title, {}, study.machine, problem.task,
-                                          tuned.initial, *design,
-                                          design == &tuned.best ? tuned.search.history : decltype(tuned.search.history){}},
-                                         study.requirements.zone, options.seed));
+  const std::vector<std::pair<int, double>> none;
+  const std::vector<ShownLayout> shown{
+      {better, "", study.machine.title + ", tuned", {}, study.machine, problem.task, tuned.initial, tuned.best,
+       tuned.search.history},
+      {given, "", study.machine.title + ", as it stands", {}, study.machine, problem.task, tuned.initial,
+       tuned.initial, none}};
+  std::vector<Json> pages(shown.size());
+  in_parallel(static_cast<int>(shown.size()), options, "measure", [&](int i) {
+    pages[i] = layout_json(shown[i], study.requirements.zone, options.seed);
+  });
+  run["layouts"] = std::move(pages);
   return run;
 }
 
@@ -207,10 +212,17 @@ StudyResult run_study(const Study& study, const RunOptions& options) {
   provenance.add_hash("study", content_hash(study.document.dump()));
   provenance.add_hash("machine", content_hash(study.machine.document.dump()));
   const TaskSpace task = prepare(expand(study.machine)).task;
-  const TuneProblem problem{study.machine, task, study.requirements, study.turn, study.constraints};
+  TuneProblem problem{study.machine, task, study.requirements, study.turn, study.constraints};
+  RunProgress progress{"tune", 0, 1.5 * study.evaluations};  // polishing takes up to half as much again
+  if (options.progress)
+    problem.evaluated = [&] {
+      ++progress.done;
+      options.progress(progress);
+    };
 
   StudyResult result;
   result.tuned = tune(problem, study.evaluations, options.seed);
+  problem.evaluated = {};
   result.satisfied = result.tuned.best.score > 0;
   result.run = run_json(study, problem, result.tuned, options);
   result.run["provenance"] = provenance.json();

@@ -122,6 +122,7 @@ class Tuner {
     }
     design.measures = measure(Evaluator(machine), problem_.requirements, design.center, fineness);
     poses_ += design.measures.poses;
+    if (problem_.evaluated) problem_.evaluated();
     return score(design.measures, problem_.requirements.objectives);
   }
 
@@ -139,7 +140,9 @@ auto isolated(const Work& work) {
 }
 
 TuneProblem without_parameters(const TuneProblem& problem) {
-  return {problem.layout, problem.task, problem.requirements, {}, problem.constraints, problem.fixed};
+  TuneProblem fixed = problem;
+  fixed.turn.clear();
+  return fixed;
 }
 
 /// Place of the zone's centre, as the last variables of a search.
@@ -163,7 +166,7 @@ Tuned tune_isolated(const TuneProblem& problem, int evaluations, std::uint64_t s
   std::ranges::copy(place, start.end() - static_cast<std::ptrdiff_t>(place.size()));
 
   tuned.initial = tuner.look(start, kFinalFineness);
-  tuned.search = tuner.search(start, {evaluations, seed, 0.6, 1e-3}, kSearchFineness);
+  tuned.search = tuner.search(start, {evaluations, seed}, kSearchFineness);
   std::vector<double> best = tuned.search.best;
   // A finer look sees what fell between the points of a coarse one, so climb again.
   const Fineness thorough{kFinalFineness.across, kFinalFineness.up, kFinalFineness.tilts,

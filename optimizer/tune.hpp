@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ struct TuneProblem {
   std::vector<std::string> turn;  ///< parameters that may change, each with min < max
   std::vector<Constraint> constraints;
   ParameterValues fixed = {};     ///< of other parameters, where they differ from the file
+  std::function<void()> evaluated = {};  ///< called after every look at a design
 };
 
 /// The parameters of a layout that may be turned: those with min < max that it uses.

@@ -75,6 +75,12 @@ class Design : public testing::Test {
     return parse_brief(document, (folder_ / "brief.json").string());
   }
 
+  /// The job in one go on all cores, done once for all tests.
+  const DesignResult& uninterrupted() const {
+    static const DesignResult result = run_design(brief());
+    return result;
+  }
+
   fs::path folder_;
 };
 
@@ -84,7 +90,7 @@ std::string without_provenance(DesignResult result) {
 }
 
 TEST_F(Design, RanksWhatDoesTheJobAndRejectsTheRestWithReasons) {
-  const DesignResult result = run_design(brief());
+  const DesignResult& result = uninterrupted();
   const auto& run = result.run;
   ASSERT_TRUE(result.satisfied);
   EXPECT_EQ(run["format"], "polyglide/run/1");
@@ -106,7 +112,7 @@ TEST_F(Design, RanksWhatDoesTheJobAndRejectsTheRestWithReasons) {
 }
 
 TEST_F(Design, ShowsTheBestLayoutsInFull) {
-  const auto run = run_design(brief()).run;
+  const auto& run = uninterrupted().run;
   ASSERT_EQ(run["layouts"].size(), 1u);
   const auto& layout = run["layouts"][0];
   EXPECT_EQ(layout["id"], run["ranking"][0]["layout"]);
@@ -133,14 +139,13 @@ TEST_F(Design, KnownLayoutsAreAlwaysTuned) {
 }
 
 TEST_F(Design, IsTheSameForAnyNumberOfThreads) {
-  RunOptions one, two;
+  RunOptions one;
   one.threads = 1;
-  two.threads = 2;
-  EXPECT_EQ(without_provenance(run_design(brief(), one)), without_provenance(run_design(brief(), two)));
+  EXPECT_EQ(without_provenance(run_design(brief(), one)), without_provenance(uninterrupted()));
 }
 
 TEST_F(Design, AnInterruptedRunGoesOnWhereItStoppedAndEndsTheSame) {
-  const std::string whole = without_provenance(run_design(brief()));
+  const std::string whole = without_provenance(uninterrupted());
   RunOptions options;
   options.out = folder_ / "run";
   options.threads = 1;
