@@ -57,13 +57,18 @@ class CatalogMachine : public testing::TestWithParam<std::string> {
 TEST_P(CatalogMachine, InverseUndoesForward) {
   std::mt19937_64 random(11);
   int tried = 0;
-  for (int sample = 0; sample < 20; ++sample) {
-    const auto posture = random_reached(dut, random, 0.08);
+  for (int sample = 0; sample < 100 && tried < 12; ++sample) {
+    const auto posture = random_reached(dut, random, 0.02);
     if (!posture) continue;
     ++tried;
-    const InverseResult back = solve_inverse(dut, pose_at(dut, *posture), {"stroke", "range", "cone", "table", "triangle"});
+    const Pose pose = pose_at(dut, *posture);
+    const InverseResult back = solve_inverse(dut, pose, {"stroke", "range", "cone", "table", "triangle"});
     ASSERT_TRUE(back.reachable) << back.limit;
-    EXPECT_LT((back.drives - drive_positions(dut.model, *posture)).norm(), 1e-8 * (1 + dut.model.size));
+    if ((back.drives - drive_positions(dut.model, *posture)).norm() < 1e-8 * (1 + dut.model.size)) continue;
+    // A machine with parasitic motion (a coupler's angle, say) may take the same task
+    // coordinates in two ways; then the other way must have them exactly.
+    ASSERT_FALSE(dut.task.pure);
+    EXPECT_LT((coordinates_of(back.pose) - coordinates_of(pose))(dut.task.axes).norm(), 1e-9);
   }
   EXPECT_GE(tried, 10);
 }
