@@ -31,8 +31,8 @@ Json result_json(const Json& run, const std::string& report) {
 }
 
 void print_ranking(const Json& run) {
-  std::vector<std::vector<std::string>> rows{{"rank", "layout", "score", "workspace", "mean 1/κ", "worst 1/κ",
-                                              "covered", "twins", "choices"}};
+  std::vector<std::vector<std::string>> rows{{"rank", "layout", "score", "workspace", "mean 1/κ",
+                                              "worst 1/κ", "covered", "twins", "choices"}};
   for (const Json& entry : run.contains("nearest") ? run.at("nearest") : run.at("ranking")) {
     if (rows.size() > kShownRows) break;
     const Json& values = entry.at("objectives");
@@ -51,17 +51,23 @@ void print_ranking(const Json& run) {
 void print_page(const Json& run, const std::string& report) {
   const Json& counts = run.at("counts");
   std::cout << run.at("answer").get<std::string>() << "\n\n"
-            << fmt::format("{} combinations, {} distinct layouts, {} families with the motion asked, {} tuned, {} satisfy the brief\n\n",
-                           counts.at("raw").dump(), counts.at("distinct").dump(), counts.at("families").dump(),
-                           counts.at("tuned").dump(), counts.at("satisfying").dump());
+            << fmt::format(
+                   "{} combinations, {} distinct layouts, {} families with the motion asked, {} "
+                   "tuned, {} satisfy the brief\n\n",
+                   counts.at("raw").dump(), counts.at("distinct").dump(),
+                   counts.at("families").dump(), counts.at("tuned").dump(),
+                   counts.at("satisfying").dump());
   if (run.contains("nearest")) std::cout << "Nearest misses:\n";
   print_ranking(run);
   std::cout << "\nRejected:\n";
   std::vector<std::vector<std::string>> rows;
-  for (const auto& [reason, count] : counts.at("rejected").items()) rows.push_back({"  " + count.dump(), reason});
-  std::cout << columns(rows) << '\n' << run.at("stability").at("statement").get<std::string>() << '\n';
+  for (const auto& [reason, count] : counts.at("rejected").items())
+    rows.push_back({"  " + count.dump(), reason});
+  std::cout << columns(rows) << '\n'
+            << run.at("stability").at("statement").get<std::string>() << '\n';
   if (run.contains("duel")) std::cout << run.at("duel").at("statement").get<std::string>() << '\n';
-  std::cout << "\nReport: " << report << fmt::format(" ({:.1f} s)\n", run.at("provenance").at("seconds").get<double>());
+  std::cout << "\nReport: " << report
+            << fmt::format(" ({:.1f} s)\n", run.at("provenance").at("seconds").get<double>());
 }
 
 }  // namespace
@@ -69,16 +75,20 @@ void print_page(const Json& run, const std::string& report) {
 int run_design(CommandLine& line) {
   std::string file, out;
   line.options().add_option("BRIEF", file, "Brief file: what the machine is for")->required();
-  line.options().add_option("-o,--out", out, "Folder for the results (default runs/<name of the brief>)");
+  line.options().add_option("-o,--out", out,
+                            "Folder for the results (default runs/<name of the brief>)");
   if (!line.parse()) return kDone;
 
   const Brief brief = load_brief(file);
   StageProgress progress(line.quiet());
   const auto folder = run_folder(out, brief.name);
-  const DesignResult result = run_design(brief, run_options(line, "design " + file, folder, progress));
+  const DesignResult result =
+      run_design(brief, run_options(line, "design " + file, folder, progress));
   const std::string report = write_run(result.run, folder).string();
-  if (line.json()) print_json(result_json(result.run, report));
-  else print_page(result.run, report);
+  if (line.json())
+    print_json(result_json(result.run, report));
+  else
+    print_page(result.run, report);
   return result.satisfied ? kDone : kNothingSatisfies;
 }
 

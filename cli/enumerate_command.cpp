@@ -12,8 +12,8 @@ namespace polyglide {
 namespace {
 
 void print_page(const nlohmann::ordered_json& result, const Enumeration& found) {
-  std::cout << fmt::format("{} combinations, {} distinct layouts ({:.1f} s, {} newly checked)\n", found.raw,
-                           found.candidates.size(), found.seconds, found.checked);
+  std::cout << fmt::format("{} combinations, {} distinct layouts ({:.1f} s, {} newly checked)\n",
+                           found.raw, found.candidates.size(), found.seconds, found.checked);
   std::vector<std::vector<std::string>> rows;
   for (const auto& [verdict, count] : result["by_verdict"].items())
     rows.push_back({"  " + verdict, count.dump()});
@@ -24,7 +24,8 @@ void print_page(const nlohmann::ordered_json& result, const Enumeration& found) 
   for (const auto& [reason, count] : result["unbuildable"].items())
     rows.push_back({"  " + count.dump(), "cannot be built: " + reason});
   std::cout << columns(rows);
-  for (const auto& [name, id] : found.known) std::cout << fmt::format("  contains {} as {}\n", name, id);
+  for (const auto& [name, id] : found.known)
+    std::cout << fmt::format("  contains {} as {}\n", name, id);
   std::cout << "stored in " << found.store << "\n";
 }
 
@@ -33,12 +34,14 @@ void print_page(const nlohmann::ordered_json& result, const Enumeration& found) 
 int run_enumerate(CommandLine& line) {
   std::string file, store_file;
   line.options().add_option("SPACE", file, "Design-space file")->required()->type_name("");
-  line.options().add_option("-o,--store", store_file, "Store of finished verdicts (default: runs/SPACE.sqlite)");
+  line.options().add_option("-o,--store", store_file,
+                            "Store of finished verdicts (default: runs/SPACE.sqlite)");
   if (!line.parse()) return kDone;
 
   const Space space = load_space(file);
   // The default name carries the content, so that an edited space starts anew.
-  if (store_file.empty()) store_file = fmt::format("runs/{}-{}.sqlite", space.name, space.hash.substr(0, 8));
+  if (store_file.empty())
+    store_file = fmt::format("runs/{}-{}.sqlite", space.name, space.hash.substr(0, 8));
   Store store(store_file, campaign_identity(space, line.seed()));
   EnumerationOptions options;
   options.threads = line.threads();
@@ -50,8 +53,10 @@ int run_enumerate(CommandLine& line) {
   };
   const Enumeration found = enumerate(space, options);
   const nlohmann::ordered_json result = to_json(found);
-  if (line.json()) print_json(result);
-  else print_page(result, found);
+  if (line.json())
+    print_json(result);
+  else
+    print_page(result, found);
   return kDone;
 }
 

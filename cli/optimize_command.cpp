@@ -13,7 +13,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json side_json(const Json& entry) {
-  return {{"score", entry.at("score")}, {"objectives", entry.at("objectives")}, {"parameters", entry.at("parameters")}};
+  return {{"score", entry.at("score")},
+          {"objectives", entry.at("objectives")},
+          {"parameters", entry.at("parameters")}};
 }
 
 Json result_json(const Json& run, const std::string& report) {
@@ -38,26 +40,34 @@ void print_page(const Json& run, const std::string& report) {
                     fmt::format("{:.6g}", value.get<double>())});
   std::cout << columns(rows) << '\n';
   for (const Json& row : run.at("requirements"))
-    std::cout << fmt::format("{}: {} — {} ({})\n", row.at("verdict").get<std::string>(), row.at("name").get<std::string>(),
-                             row.at("asked").get<std::string>(), row.at("note").get<std::string>());
-  std::cout << "\nReport: " << report << fmt::format(" ({:.1f} s)\n", run.at("provenance").at("seconds").get<double>());
+    std::cout << fmt::format("{}: {} — {} ({})\n", row.at("verdict").get<std::string>(),
+                             row.at("name").get<std::string>(), row.at("asked").get<std::string>(),
+                             row.at("note").get<std::string>());
+  std::cout << "\nReport: " << report
+            << fmt::format(" ({:.1f} s)\n", run.at("provenance").at("seconds").get<double>());
 }
 
 }  // namespace
 
 int run_optimize(CommandLine& line) {
   std::string file, out;
-  line.options().add_option("STUDY", file, "Study file: which machine, and what to turn")->required();
-  line.options().add_option("-o,--out", out, "Folder for the results (default runs/<name of the study>)");
+  line.options()
+      .add_option("STUDY", file, "Study file: which machine, and what to turn")
+      ->required();
+  line.options().add_option("-o,--out", out,
+                            "Folder for the results (default runs/<name of the study>)");
   if (!line.parse()) return kDone;
 
   const Study study = load_study(file);
   StageProgress progress(line.quiet());
   const auto folder = run_folder(out, study.name);
-  const StudyResult result = run_study(study, run_options(line, "optimize " + file, folder, progress));
+  const StudyResult result =
+      run_study(study, run_options(line, "optimize " + file, folder, progress));
   const std::string report = write_run(result.run, folder).string();
-  if (line.json()) print_json(result_json(result.run, report));
-  else print_page(result.run, report);
+  if (line.json())
+    print_json(result_json(result.run, report));
+  else
+    print_page(result.run, report);
   return result.satisfied ? kDone : kNothingSatisfies;
 }
 

@@ -46,8 +46,9 @@ Eigen::Matrix<double, 6, 1> read_pose(const std::string& text, const Units& unit
 Eigen::VectorXd read_drives(const std::string& text, const Model& model) {
   const std::vector<double> numbers = parse_numbers(text, "--fk");
   if (numbers.size() != model.drives.size())
-    throw InputError({wrong_argument(
-        text, fmt::format("--fk takes one number per drive; {} has {}", model.mechanism.name, model.drives.size()))});
+    throw InputError(
+        {wrong_argument(text, fmt::format("--fk takes one number per drive; {} has {}",
+                                          model.mechanism.name, model.drives.size()))});
   Eigen::VectorXd drives(static_cast<Eigen::Index>(numbers.size()));
   const Units& units = model.mechanism.units;
   for (std::size_t d = 0; d < numbers.size(); ++d)
@@ -56,8 +57,8 @@ Eigen::VectorXd read_drives(const std::string& text, const Model& model) {
   return drives;
 }
 
-ordered_json inverse(const Machine& machine, const std::string& text, const std::vector<std::string>& ignored,
-                     bool json) {
+ordered_json inverse(const Machine& machine, const std::string& text,
+                     const std::vector<std::string>& ignored, bool json) {
   const InverseResult result =
       solve_inverse(machine, pose_of(read_pose(text, machine.model.mechanism.units)), ignored);
   ordered_json document{{"name", machine.model.mechanism.name}, {"reachable", result.reachable}};
@@ -71,12 +72,14 @@ ordered_json inverse(const Machine& machine, const std::string& text, const std:
   if (!result.reachable) return document;
   std::cout << "  pose from home " << pose_text(result.pose) << "\n  drives from home:\n";
   for (int d = 0; d < result.drives.size(); ++d)
-    std::cout << fmt::format("    {:<16} {}\n", drive_name(machine.model, d),
-                             linear_drive(machine.model, d) ? in_mm(result.drives[d]) : in_degrees(result.drives[d]));
+    std::cout << fmt::format(
+        "    {:<16} {}\n", drive_name(machine.model, d),
+        linear_drive(machine.model, d) ? in_mm(result.drives[d]) : in_degrees(result.drives[d]));
   return document;
 }
 
-ordered_json forward(const Machine& machine, const std::string& text, bool all, std::uint64_t seed, bool json) {
+ordered_json forward(const Machine& machine, const std::string& text, bool all, std::uint64_t seed,
+                     bool json) {
   const auto solutions = solve_forward(machine, read_drives(text, machine.model), all, seed);
   ordered_json document{{"name", machine.model.mechanism.name}, {"count", solutions.size()}};
   document["solutions"] = ordered_json::array();
@@ -86,7 +89,8 @@ ordered_json forward(const Machine& machine, const std::string& text, bool all, 
                                      {"certified", solution.closed_form},
                                      {"home_mode", solution.home_mode}});
   if (json) return document;
-  std::cout << fmt::format("{}: {} assembly mode(s) found\n", machine.model.mechanism.name, solutions.size());
+  std::cout << fmt::format("{}: {} assembly mode(s) found\n", machine.model.mechanism.name,
+                           solutions.size());
   for (const ForwardSolution& solution : solutions)
     std::cout << fmt::format("  pose from home {}{}\n", pose_text(solution.pose),
                              solution.home_mode ? " (home's assembly mode)" : "");
@@ -101,13 +105,18 @@ int run_pose(CommandLine& line) {
   std::vector<std::string> ignored;
   bool all = false;
   add_machine_options(line.options(), options);
-  auto* ik_option = line.options().add_option("--ik", ik, "Drives for the pose x,y,z[,a,b,c] from home, file units");
-  auto* fk_option = line.options().add_option("--fk", fk, "Poses for the drives q1,q2,… from home, file units");
+  auto* ik_option = line.options().add_option(
+      "--ik", ik, "Drives for the pose x,y,z[,a,b,c] from home, file units");
+  auto* fk_option =
+      line.options().add_option("--fk", fk, "Poses for the drives q1,q2,… from home, file units");
   ik_option->excludes(fk_option);
   line.options().add_flag("--all", all, "With --fk: every assembly mode")->needs(fk_option);
-  line.options().add_option("--ignore-limits", ignored, "Limits that do not count, separated by commas")->delimiter(',');
+  line.options()
+      .add_option("--ignore-limits", ignored, "Limits that do not count, separated by commas")
+      ->delimiter(',');
   if (!line.parse()) return kDone;
-  if (ik.empty() && fk.empty()) throw InputError({wrong_argument("", "pose needs --ik x,y,z[,a,b,c] or --fk q1,q2,…")});
+  if (ik.empty() && fk.empty())
+    throw InputError({wrong_argument("", "pose needs --ik x,y,z[,a,b,c] or --fk q1,q2,…")});
 
   std::vector<ordered_json> documents;
   for (const ChosenMachine& chosen : load_machines(options)) {

@@ -12,7 +12,8 @@ namespace {
 nlohmann::json load_run(const std::filesystem::path& file) {
   nlohmann::json run = read_json(file);
   if (!run.is_object() || run.value("format", nlohmann::json()) != "polyglide/run/1")
-    throw InputError({{file.string(), "/format", "", "must be \"polyglide/run/1\": a run that design or optimize stored", ""}});
+    throw InputError({{file.string(), "/format", "",
+                       "must be \"polyglide/run/1\": a run that design or optimize stored", ""}});
   return run;
 }
 
@@ -20,16 +21,22 @@ nlohmann::json load_run(const std::filesystem::path& file) {
 
 int run_report(CommandLine& line) {
   std::string run, out;
-  line.options().add_option("RUN", run, "Stored run: run.json, or the folder it lies in")->required();
-  line.options().add_option("-o,--out", out, "The page's file (default: report.html beside the run)");
+  line.options()
+      .add_option("RUN", run, "Stored run: run.json, or the folder it lies in")
+      ->required();
+  line.options().add_option("-o,--out", out,
+                            "The page's file (default: report.html beside the run)");
   if (!line.parse()) return kDone;
 
   std::filesystem::path file = run;
   if (std::filesystem::is_directory(file)) file /= "run.json";
-  const std::filesystem::path page = out.empty() ? file.parent_path() / "report.html" : std::filesystem::path(out);
+  const std::filesystem::path page =
+      out.empty() ? file.parent_path() / "report.html" : std::filesystem::path(out);
   write_html(load_run(file), page);
-  if (line.json()) print_json({{"report", page.string()}});
-  else std::cout << page.string() << '\n';
+  if (line.json())
+    print_json({{"report", page.string()}});
+  else
+    std::cout << page.string() << '\n';
   return kDone;
 }
 

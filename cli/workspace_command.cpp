@@ -23,39 +23,51 @@ std::string box_text(const Box& box) {
 
 void print_page(const Workspace& workspace, const WorkspaceOptions& how, const std::string& name) {
   std::cout << fmt::format("{}: workspace {} (between {} and {}), positions from home\n", name,
-                           litres(workspace.volume), litres(workspace.volume_lower), litres(workspace.volume_upper));
+                           litres(workspace.volume), litres(workspace.volume_lower),
+                           litres(workspace.volume_upper));
   std::vector<std::vector<std::string>> rows{
-      {"  extent", fmt::format("{} to {}", point_in_mm(workspace.lower), point_in_mm(workspace.upper))},
+      {"  extent",
+       fmt::format("{} to {}", point_in_mm(workspace.lower), point_in_mm(workspace.upper))},
       {"  largest cylinder", cylinder_text(workspace.inscribed_cylinder)},
       {"  largest box", box_text(workspace.inscribed_box)}};
-  for (const Cylinder& cylinder : workspace.cylinders) rows.push_back({"  cylinder", cylinder_text(cylinder)});
+  for (const Cylinder& cylinder : workspace.cylinders)
+    rows.push_back({"  cylinder", cylinder_text(cylinder)});
   if (how.box)
-    rows.push_back({"  asked box", workspace.asked_box ? "fits: " + box_text(*workspace.asked_box) : "does not fit"});
+    rows.push_back({"  asked box", workspace.asked_box ? "fits: " + box_text(*workspace.asked_box)
+                                                       : "does not fit"});
   if (how.cylinder)
-    rows.push_back({"  asked cylinder",
-                    workspace.asked_cylinder ? "fits: " + cylinder_text(*workspace.asked_cylinder) : "does not fit"});
-  rows.push_back({"  conditioning 1/κ", fmt::format("mean {:.3f} (GCI), worst {:.3f}, best {:.3f}; characteristic length {}",
-                                                    workspace.global_conditioning, workspace.worst, workspace.best,
-                                                    in_mm(workspace.characteristic_length))});
+    rows.push_back({"  asked cylinder", workspace.asked_cylinder
+                                            ? "fits: " + cylinder_text(*workspace.asked_cylinder)
+                                            : "does not fit"});
+  rows.push_back(
+      {"  conditioning 1/κ",
+       fmt::format("mean {:.3f} (GCI), worst {:.3f}, best {:.3f}; characteristic length {}",
+                   workspace.global_conditioning, workspace.worst, workspace.best,
+                   in_mm(workspace.characteristic_length))});
   if (workspace.rotation_range)
     rows.push_back({fmt::format("  widest turn {}", workspace.rotation_range->axis),
                     fmt::format("{} to {} at {}", in_degrees(workspace.rotation_range->min),
-                                in_degrees(workspace.rotation_range->max), point_in_mm(workspace.rotation_range->at))});
+                                in_degrees(workspace.rotation_range->max),
+                                point_in_mm(workspace.rotation_range->at))});
   for (const auto& [limit, share] : workspace.limits_hit)
     rows.push_back({"  bounded by", fmt::format("{:.1f} % {}", 100 * share, limit)});
-  rows.push_back({"  effort", fmt::format("{} poses in {:.2f} s", workspace.poses, workspace.seconds)});
+  rows.push_back(
+      {"  effort", fmt::format("{} poses in {:.2f} s", workspace.poses, workspace.seconds)});
   std::cout << columns(rows);
 }
 
 /// "AxBxC" or "A,B,C" in file units to metres.
-std::vector<double> read_size(std::string text, const char* option, std::size_t count, const Units& units) {
+std::vector<double> read_size(std::string text, const char* option, std::size_t count,
+                              const Units& units) {
   for (char& letter : text)
     if (letter == 'x') letter = ',';
   std::vector<double> size = parse_numbers(text, option);
-  const bool positive = std::all_of(size.begin(), size.end(), [](double value) { return value > 0; });
+  const bool positive =
+      std::all_of(size.begin(), size.end(), [](double value) { return value > 0; });
   if (size.size() != count || !positive)
-    throw InputError({wrong_argument(text, fmt::format("{} takes {} positive lengths, as in {}", option, count,
-                                                       count == 3 ? "200x200x100" : "230x170"))});
+    throw InputError(
+        {wrong_argument(text, fmt::format("{} takes {} positive lengths, as in {}", option, count,
+                                          count == 3 ? "200x200x100" : "230x170"))});
   for (double& value : size) value *= units.metres;
   return size;
 }
@@ -68,11 +80,14 @@ int run_workspace(CommandLine& line) {
   std::string box, cylinder, turned;
   add_machine_options(line.options(), options);
   auto& app = line.options();
-  app.add_option("--ignore-limits", how.ignored, "Limits that do not count, separated by commas")->delimiter(',');
+  app.add_option("--ignore-limits", how.ignored, "Limits that do not count, separated by commas")
+      ->delimiter(',');
   app.add_option("--box", box, "Does a box of this size fit, as in 200x200x100 (file units)");
-  app.add_option("--cylinder", cylinder, "Does a cylinder diameter x height fit, as in 230x170 (file units)");
+  app.add_option("--cylinder", cylinder,
+                 "Does a cylinder diameter x height fit, as in 230x170 (file units)");
   app.add_option("--turned", turned, "Orientation a,b,c of the platform (default: as at home)");
-  app.add_option("--accuracy", how.accuracy, "Relative accuracy of the volume")->check(CLI::Range(1e-5, 0.1));
+  app.add_option("--accuracy", how.accuracy, "Relative accuracy of the volume")
+      ->check(CLI::Range(1e-5, 0.1));
   if (!line.parse()) return kDone;
 
   std::vector<nlohmann::ordered_json> documents;
@@ -88,7 +103,8 @@ int run_workspace(CommandLine& line) {
     }
     if (!turned.empty()) {
       const auto angles = parse_numbers(turned, "--turned");
-      if (angles.size() != 3) throw InputError({wrong_argument(turned, "--turned takes three angles a,b,c")});
+      if (angles.size() != 3)
+        throw InputError({wrong_argument(turned, "--turned takes three angles a,b,c")});
       Eigen::Matrix<double, 6, 1> coordinates = Eigen::Matrix<double, 6, 1>::Zero();
       for (int i = 0; i < 3; ++i) coordinates[3 + i] = angles[i] * units.radians;
       how.rotation = pose_of(coordinates).rotation;

@@ -9,7 +9,8 @@ namespace polyglide {
 namespace {
 
 void set_drives(const Model& model, Posture& posture, const Eigen::VectorXd& drives) {
-  Eigen::VectorXd increments = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.freedoms.size()));
+  Eigen::VectorXd increments =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.freedoms.size()));
   increments(model.drives) = drives - drive_positions(model, posture);
   advance(model, posture, increments);
 }
@@ -27,7 +28,8 @@ struct Sphere {
   double radius;
 };
 
-std::optional<std::vector<Sphere>> leg_spheres(const Machine& machine, const Eigen::VectorXd& drives) {
+std::optional<std::vector<Sphere>> leg_spheres(const Machine& machine,
+                                               const Eigen::VectorXd& drives) {
   const TaskSpace& task = machine.task;
   const bool translational = task.pure && task.translations == 3 && task.rotations == 0;
   if (!translational || !machine.legs || machine.legs->primary.size() != 3) return std::nullopt;
@@ -101,9 +103,9 @@ std::vector<ForwardSolution> multistart(const Machine& machine, const Eigen::Vec
     ForwardSolution found;
     found.pose = platform_pose(model, posture.bodies[model.mechanism.platform]);
     found.residual = projection.residual;
-    const bool known = std::any_of(solutions.begin(), solutions.end(), [&](const ForwardSolution& other) {
-      return same_pose(model, other.pose, found.pose);
-    });
+    const bool known = std::any_of(
+        solutions.begin(), solutions.end(),
+        [&](const ForwardSolution& other) { return same_pose(model, other.pose, found.pose); });
     if (!known) solutions.push_back(found);
   }
   return solutions;
@@ -159,14 +161,19 @@ std::vector<ForwardSolution> solve_forward(const Machine& machine, const Eigen::
   }
   const auto spheres = leg_spheres(machine, drives);
   std::vector<ForwardSolution> solutions;
-  if (spheres) solutions = solve_spheres(model, *spheres);
-  else if (all) solutions = multistart(machine, drives, seed);
+  if (spheres)
+    solutions = solve_spheres(model, *spheres);
+  else if (all)
+    solutions = multistart(machine, drives, seed);
 
-  const auto mine = std::find_if(solutions.begin(), solutions.end(), [&](const ForwardSolution& solution) {
-    return followed && same_pose(model, solution.pose, own.pose);
-  });
-  if (mine != solutions.end()) mine->home_mode = true;
-  else if (followed) solutions.push_back(own);
+  const auto mine =
+      std::find_if(solutions.begin(), solutions.end(), [&](const ForwardSolution& solution) {
+        return followed && same_pose(model, solution.pose, own.pose);
+      });
+  if (mine != solutions.end())
+    mine->home_mode = true;
+  else if (followed)
+    solutions.push_back(own);
   std::sort(solutions.begin(), solutions.end(), before);
   if (!all && solutions.size() > 1) solutions.resize(1);
   return solutions;

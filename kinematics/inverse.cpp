@@ -41,16 +41,16 @@ Goal platform_goal(const Machine& machine, const Coordinates& goal) {
     Coordinates error = coordinate_error(at, goal);
     Eigen::Matrix<double, 6, 6> rates = coordinate_rates(at);
     if (machine.task.rotations == 3) {
-      const Eigen::AngleAxisd turn(
-          Eigen::Matrix3d(platform.linear() * pose_of(goal).rotation.toRotationMatrix().transpose()));
+      const Eigen::AngleAxisd turn(Eigen::Matrix3d(
+          platform.linear() * pose_of(goal).rotation.toRotationMatrix().transpose()));
       error.tail<3>() = turn.angle() * turn.axis();
       rates.bottomLeftCorner<3, 3>().setIdentity();
     }
     error.head<3>() /= model.size;
     rates.topRows<3>() /= model.size;
 
-    Eigen::MatrixXd twist = body_jacobian(model, screws, model.mechanism.platform) *
-                            freedom_scale(model).asDiagonal();
+    Eigen::MatrixXd twist =
+        body_jacobian(model, screws, model.mechanism.platform) * freedom_scale(model).asDiagonal();
     const Vector3 tool = platform * model.mechanism.tool;
     for (Eigen::Index c = 0; c < twist.cols(); ++c) {
       const Vector3 w = twist.col(c).head<3>();
@@ -97,7 +97,8 @@ InverseResult solve_closed_form(const Machine& machine, const Pose& pose,
 InverseResult solve_inverse_general(const Machine& machine, const Pose& pose, Posture& posture) {
   const Model& model = machine.model;
   const Coordinates goal = coordinates_of(pose);
-  const Coordinates start = coordinates_of(platform_pose(model, posture.bodies[model.mechanism.platform]));
+  const Coordinates start =
+      coordinates_of(platform_pose(model, posture.bodies[model.mechanism.platform]));
   Coordinates span = coordinate_error(goal, start);
   Coordinates scaled = span;
   scaled.head<3>() /= model.size;

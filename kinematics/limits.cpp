@@ -12,7 +12,8 @@ std::string broken_range(const Model& model, const Posture& posture, int j) {
   const Joint& joint = model.mechanism.joints[j];
   for (std::size_t i = 0; i < joint.range.size(); ++i) {
     const double q = posture.q[model.first_freedom[j] + static_cast<int>(i)];
-    const bool driven = std::count(joint.driven.begin(), joint.driven.end(), static_cast<int>(i)) > 0;
+    const bool driven =
+        std::count(joint.driven.begin(), joint.driven.end(), static_cast<int>(i)) > 0;
     const std::string name = (driven ? "stroke " : "range ") + joint.name;
     if (q < joint.range[i].min - kSlack) return name + " min";
     if (q > joint.range[i].max + kSlack) return name + " max";

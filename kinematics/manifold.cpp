@@ -9,7 +9,7 @@ namespace {
 constexpr double kClosed = 2e-13;      // aim
 constexpr double kAcceptable = 1e-10;  // good enough when Newton has stagnated
 constexpr int kMostIterations = 40;
-constexpr double kLongestStep = 0.6;   // [rad] of the fastest joint, keeps Newton on its branch
+constexpr double kLongestStep = 0.6;  // [rad] of the fastest joint, keeps Newton on its branch
 
 /// (J Jᵀ + λ)⁻¹ with λ far below any singular value that matters.
 class DampedInverse {
@@ -20,7 +20,9 @@ class DampedInverse {
     gram.diagonal().array() += 1e-11 * std::max(scale, 1e-6);
     factor_.compute(gram);
   }
-  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right) const { return factor_.solve(right); }
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right) const {
+    return factor_.solve(right);
+  }
 
  private:
   Eigen::LLT<Eigen::MatrixXd> factor_;
@@ -28,10 +30,11 @@ class DampedInverse {
 
 void move(const Model& model, Posture& posture, const std::vector<int>& active,
           const Eigen::VectorXd& scaled) {
-  Eigen::VectorXd increments = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.freedoms.size()));
+  Eigen::VectorXd increments =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.freedoms.size()));
   for (std::size_t i = 0; i < active.size(); ++i)
-    increments[active[i]] =
-        scaled[static_cast<Eigen::Index>(i)] * (model.freedoms[active[i]].translational ? model.size : 1);
+    increments[active[i]] = scaled[static_cast<Eigen::Index>(i)] *
+                            (model.freedoms[active[i]].translational ? model.size : 1);
   advance(model, posture, increments);
 }
 
@@ -59,7 +62,8 @@ std::vector<int> all_freedoms(const Model& model) {
 std::vector<int> passive_freedoms(const Model& model) {
   std::vector<int> active;
   for (int f : all_freedoms(model))
-    if (std::find(model.drives.begin(), model.drives.end(), f) == model.drives.end()) active.push_back(f);
+    if (std::find(model.drives.begin(), model.drives.end(), f) == model.drives.end())
+      active.push_back(f);
   return active;
 }
 

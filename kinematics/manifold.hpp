@@ -12,7 +12,8 @@ namespace polyglide {
 [[nodiscard]] std::vector<int> passive_freedoms(const Model& model);
 
 /// The columns of `matrix` that belong to `active` freedoms.
-[[nodiscard]] Eigen::MatrixXd columns(const Eigen::MatrixXd& matrix, const std::vector<int>& active);
+[[nodiscard]] Eigen::MatrixXd columns(const Eigen::MatrixXd& matrix,
+                                      const std::vector<int>& active);
 
 /// Why a projection stopped and what it left.
 struct Projection {
@@ -34,8 +35,8 @@ using Goal = std::function<Demand(const Posture& posture, const Eigen::MatrixXd&
 /// (J Jᵀ + λ) y = -r, δ = Jᵀ y, which redundant constraints do not disturb
 /// because Jᵀ annihilates whatever λ cannot resolve.
 /// With a goal: onto the part of the manifold where the goal holds too.
-[[nodiscard]] Projection project(const Model& model, Posture& posture, const std::vector<int>& active,
-                                 const Goal& goal = {});
+[[nodiscard]] Projection project(const Model& model, Posture& posture,
+                                 const std::vector<int>& active, const Goal& goal = {});
 
 /// The part of `direction` (scaled, one entry per active freedom) that keeps the
 /// loops closed to first order, with its largest entry scaled to 1; zero when

@@ -14,15 +14,15 @@
 namespace polyglide {
 namespace {
 
-constexpr double kMoved = 0.25;       // of a step: a posture nearer to its start has not moved
-constexpr double kOtherBranch = 0.5;  // sine of the angle between tangent spaces of different branches
+constexpr double kMoved = 0.25;  // of a step: a posture nearer to its start has not moved
+constexpr double kOtherBranch =
+    0.5;  // sine of the angle between tangent spaces of different branches
 constexpr double kDoubtfulGap = 1e3;  // contract: a smaller gap is said in the reasons
 
 /// A normal random direction; own generator so that a seed means the same everywhere.
 Eigen::VectorXd random_direction(std::mt19937_64& random, Eigen::Index size) {
   Eigen::VectorXd direction(size);
-  for (double& value : direction)
-    value = 2 * static_cast<double>(random() >> 11) * 0x1p-53 - 1;
+  for (double& value : direction) value = 2 * static_cast<double>(random() >> 11) * 0x1p-53 - 1;
   return direction;
 }
 
@@ -36,7 +36,8 @@ std::optional<Walk> walk_from_home(const Model& model, const MobilityOptions& op
                                    std::mt19937_64& random) {
   const std::vector<int> active = all_freedoms(model);
   const Posture start = home(model);
-  const Eigen::VectorXd direction = random_direction(random, static_cast<Eigen::Index>(active.size()));
+  const Eigen::VectorXd direction =
+      random_direction(random, static_cast<Eigen::Index>(active.size()));
   Walk walk{start, start};
   for (int i = 0; i < options.steps; ++i) {
     const Eigen::VectorXd along = tangent(model, walk.far, active, direction);
@@ -57,8 +58,8 @@ std::optional<Walk> walk_from_home(const Model& model, const MobilityOptions& op
 struct Branch {
   Eigen::MatrixXd near_kernel;  ///< tangent space near home
   std::vector<Posture> far;
-  Freedoms free;     ///< at the posture with the fewest freedoms
-  Freedoms locked;   ///< the same with drives held
+  Freedoms free;    ///< at the posture with the fewest freedoms
+  Freedoms locked;  ///< the same with drives held
   TaskSpace task;
   std::optional<Posture> at;  ///< where free and locked were measured
 };
@@ -81,8 +82,12 @@ double separation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 class Analysis {
  public:
   Analysis(const Model& model, const MobilityOptions& options)
-      : model_(model), options_(options), random_(options.seed), all_(all_freedoms(model)),
-        passive_(passive_freedoms(model)), home_(home(model)) {}
+      : model_(model),
+        options_(options),
+        random_(options.seed),
+        all_(all_freedoms(model)),
+        passive_(passive_freedoms(model)),
+        home_(home(model)) {}
 
   void look_at_home();
   void explore_branches();
@@ -94,7 +99,9 @@ class Analysis {
 
  private:
   void measure(Branch& branch);
-  void note_gap(const RankDecision& rank) { report_.rank_gap = std::min(report_.rank_gap, rank.gap); }
+  void note_gap(const RankDecision& rank) {
+    report_.rank_gap = std::min(report_.rank_gap, rank.gap);
+  }
   void describe_task();
   void name_idle_rods();
   void add_mode(const std::string& about, const Posture& at, const Freedoms& freedoms,
@@ -146,7 +153,8 @@ void Analysis::explore_branches() {
       return known.near_kernel.cols() == near.basis.cols() &&
              separation(known.near_kernel, near.basis) < kOtherBranch;
     });
-    if (branch == branches_.end()) branch = branches_.insert(branch, Branch{std::move(near.basis), {}, {}, {}, {}, {}});
+    if (branch == branches_.end())
+      branch = branches_.insert(branch, Branch{std::move(near.basis), {}, {}, {}, {}, {}});
     branch->far.push_back(std::move(walk->far));
   }
   // A home that is as free as its surroundings is a smooth point: one branch only,
@@ -180,7 +188,8 @@ void Analysis::measure(Branch& branch) {
 
 void Analysis::choose_main_branch() {
   const auto key = [](const Branch& branch) {
-    return std::tuple(branch.free.mobility, branch.task.translations, branch.free.platform_rank.rank);
+    return std::tuple(branch.free.mobility, branch.task.translations,
+                      branch.free.platform_rank.rank);
   };
   for (const Branch& branch : branches_) {
     if (!main_ || key(branch) > key(*main_)) main_ = &branch;
@@ -249,10 +258,10 @@ void Analysis::look_for_self_motion() {
     for (int i = 0; i < 2 && moving; ++i)
       moving = step_along(model_, posture, passive_, tangent(model_, posture, passive_, along),
                           options_.step);
-    self_motion_ = moving &&
-                   displacement(model_, home_, posture, model_.mechanism.platform) >
-                       kMoved * options_.step &&
-                   freedoms_at(model_, posture, passive_).platform_rank.rank > 0;
+    self_motion_ =
+        moving &&
+        displacement(model_, home_, posture, model_.mechanism.platform) > kMoved * options_.step &&
+        freedoms_at(model_, posture, passive_).platform_rank.rank > 0;
   }
 }
 
@@ -260,47 +269,62 @@ void Analysis::decide() {
   auto& reasons = report_.reasons;
   if (report_.platform_dof == 0) {
     report_.verdict = Verdict::rigid;
-    reasons.push_back(report_.home > 0
-                          ? fmt::format("The platform cannot move: the {} instantaneous freedom(s) at home do not "
-                                        "continue into a finite motion.", report_.home)
-                          : "The platform cannot move: the loop-closure Jacobian at home has full column rank.");
+    reasons.push_back(
+        report_.home > 0
+            ? fmt::format(
+                  "The platform cannot move: the {} instantaneous freedom(s) at home do not "
+                  "continue into a finite motion.",
+                  report_.home)
+            : "The platform cannot move: the loop-closure Jacobian at home has full column rank.");
   } else if (report_.locked_platform > 0) {
     report_.verdict = Verdict::uncertain;
-    reasons.push_back(fmt::format("With all {} drives held the platform keeps {} freedom(s) at generic postures.",
-                                  report_.drives, report_.locked_platform));
+    reasons.push_back(
+        fmt::format("With all {} drives held the platform keeps {} freedom(s) at generic postures.",
+                    report_.drives, report_.locked_platform));
   } else if (self_motion_) {
     report_.verdict = Verdict::uncertain;
-    reasons.push_back("With all drives held at home the platform can still move: a finite self-motion passes "
-                      "through home, although generic postures are held.");
+    reasons.push_back(
+        "With all drives held at home the platform can still move: a finite self-motion passes "
+        "through home, although generic postures are held.");
   } else if (report_.home > report_.finite && branching_) {
     report_.verdict = Verdict::uncertain;
-    reasons.push_back(fmt::format(
-        "Home is a constraint singularity: {} freedoms there, {} on the motion branches, {} of which meet at home; "
-        "the drives do not decide which one is taken.", report_.home, report_.finite, branches_.size()));
+    reasons.push_back(
+        fmt::format("Home is a constraint singularity: {} freedoms there, {} on the motion "
+                    "branches, {} of which meet at home; "
+                    "the drives do not decide which one is taken.",
+                    report_.home, report_.finite, branches_.size()));
   } else if (report_.home_locked_platform > 0) {
     report_.verdict = Verdict::singular_home;
-    reasons.push_back(fmt::format("Home is an actuation singularity: with the drives held the platform keeps {} "
-                                  "instantaneous freedom(s) there; generic postures are held.",
-                                  report_.home_locked_platform));
+    reasons.push_back(
+        fmt::format("Home is an actuation singularity: with the drives held the platform keeps {} "
+                    "instantaneous freedom(s) there; generic postures are held.",
+                    report_.home_locked_platform));
   } else if (report_.surplus > 0) {
     report_.verdict = Verdict::overdriven;
-    reasons.push_back(fmt::format("{} drives control {} freedom(s): {} too many, which work against each other.",
-                                  report_.drives, report_.finite - report_.locked_mobility, report_.surplus));
+    reasons.push_back(
+        fmt::format("{} drives control {} freedom(s): {} too many, which work against each other.",
+                    report_.drives, report_.finite - report_.locked_mobility, report_.surplus));
   } else {
     report_.verdict = Verdict::determinate;
-    reasons.push_back(fmt::format("The {} drives hold the platform's {} freedom(s) ({}) at home and at generic "
-                                  "postures.", report_.drives, report_.platform_dof, report_.axes));
+    reasons.push_back(
+        fmt::format("The {} drives hold the platform's {} freedom(s) ({}) at home and at generic "
+                    "postures.",
+                    report_.drives, report_.platform_dof, report_.axes));
   }
   if (report_.redundant_constraints > 0)
-    reasons.push_back(fmt::format("{} constraint(s) are redundant: the machine moves only as far as its axes are "
-                                  "exactly parallel or intersecting as drawn.", report_.redundant_constraints));
+    reasons.push_back(
+        fmt::format("{} constraint(s) are redundant: the machine moves only as far as its axes are "
+                    "exactly parallel or intersecting as drawn.",
+                    report_.redundant_constraints));
   if (report_.rank_gap < kDoubtfulGap)
-    reasons.push_back(fmt::format("A rank decision rests on a gap of only {:.3g}; treat the verdict with care.",
-                                  report_.rank_gap));
+    reasons.push_back(
+        fmt::format("A rank decision rests on a gap of only {:.3g}; treat the verdict with care.",
+                    report_.rank_gap));
 }
 
 /// Finite motion where there is one, else the first-order one, for drawing.
-std::vector<std::vector<Transform>> Analysis::animate(const Posture& at, const std::vector<int>& active,
+std::vector<std::vector<Transform>> Analysis::animate(const Posture& at,
+                                                      const std::vector<int>& active,
                                                       const Eigen::VectorXd& along) const {
   constexpr int kFrames = 10;
   constexpr double kStep = 0.04;
@@ -308,10 +332,14 @@ std::vector<std::vector<Transform>> Analysis::animate(const Posture& at, const s
   for (int side : {1, -1}) {
     Posture posture = at;
     for (int i = 1; i <= kFrames; ++i) {
-      if (!step_along(model_, posture, active, tangent(model_, posture, active, side * along), kStep)) break;
+      if (!step_along(model_, posture, active, tangent(model_, posture, active, side * along),
+                      kStep))
+        break;
       if (displacement(model_, at, posture) < kMoved * kStep * i) break;
-      if (side > 0) frames.push_back(posture.bodies);
-      else frames.push_front(posture.bodies);
+      if (side > 0)
+        frames.push_back(posture.bodies);
+      else
+        frames.push_front(posture.bodies);
     }
   }
   if (frames.size() == 1) {
@@ -319,11 +347,14 @@ std::vector<std::vector<Transform>> Analysis::animate(const Posture& at, const s
     for (int i = 1; i <= kFrames; ++i)
       for (int side : {1, -1}) {
         Posture posture = at;
-        Eigen::VectorXd increments = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model_.freedoms.size()));
+        Eigen::VectorXd increments =
+            Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model_.freedoms.size()));
         increments(active) = side * i * kStep / 4 * along / along.cwiseAbs().maxCoeff();
         advance(model_, posture, increments.cwiseProduct(freedom_scale(model_)));
-        if (side > 0) frames.push_back(posture.bodies);
-        else frames.push_front(posture.bodies);
+        if (side > 0)
+          frames.push_back(posture.bodies);
+        else
+          frames.push_front(posture.bodies);
       }
   }
   return {frames.begin(), frames.end()};
@@ -375,11 +406,16 @@ void Analysis::name_idle_rods() {
 
 std::string to_string(Verdict verdict) {
   switch (verdict) {
-    case Verdict::determinate: return "determinate";
-    case Verdict::overdriven: return "overdriven";
-    case Verdict::singular_home: return "singular-home";
-    case Verdict::uncertain: return "uncertain";
-    case Verdict::rigid: return "rigid";
+    case Verdict::determinate:
+      return "determinate";
+    case Verdict::overdriven:
+      return "overdriven";
+    case Verdict::singular_home:
+      return "singular-home";
+    case Verdict::uncertain:
+      return "uncertain";
+    case Verdict::rigid:
+      return "rigid";
   }
   return "";
 }
@@ -400,14 +436,20 @@ nlohmann::ordered_json to_json(const MobilityReport& report, const Mechanism& me
   json["name"] = mechanism.name;
   json["verdict"] = to_string(report.verdict);
   json["reasons"] = report.reasons;
-  json["mobility"] = {{"home", report.home}, {"finite", report.finite}, {"kutzbach", report.kutzbach},
-                      {"redundant_constraints", report.redundant_constraints}, {"idle", report.idle}};
-  json["platform"] = {{"dof", report.platform_dof}, {"translations", report.task.translations},
-                      {"rotations", report.task.rotations}, {"pattern", report.pattern},
-                      {"home_dof", report.platform_home_dof}, {"axes", report.axes}};
-  json["drives"] = {{"count", report.drives}, {"locked_mobility", report.locked_mobility},
+  json["mobility"] = {{"home", report.home},
+                      {"finite", report.finite},
+                      {"kutzbach", report.kutzbach},
+                      {"redundant_constraints", report.redundant_constraints},
+                      {"idle", report.idle}};
+  json["platform"] = {
+      {"dof", report.platform_dof},           {"translations", report.task.translations},
+      {"rotations", report.task.rotations},   {"pattern", report.pattern},
+      {"home_dof", report.platform_home_dof}, {"axes", report.axes}};
+  json["drives"] = {{"count", report.drives},
+                    {"locked_mobility", report.locked_mobility},
                     {"locked_platform", report.locked_platform},
-                    {"home_locked_platform", report.home_locked_platform}, {"surplus", report.surplus}};
+                    {"home_locked_platform", report.home_locked_platform},
+                    {"surplus", report.surplus}};
   json["rank_gap"] = report.rank_gap;
   json["margin"] = report.margin;
   json["branches"] = nlohmann::ordered_json::array();
@@ -416,7 +458,8 @@ nlohmann::ordered_json to_json(const MobilityReport& report, const Mechanism& me
   json["idle_rods"] = report.idle_rods;
   json["modes"] = nlohmann::ordered_json::array();
   for (const FreedomMode& mode : report.modes)
-    json["modes"].push_back({{"about", mode.about}, {"twist", std::vector<double>(mode.twist.begin(), mode.twist.end())}});
+    json["modes"].push_back({{"about", mode.about},
+                             {"twist", std::vector<double>(mode.twist.begin(), mode.twist.end())}});
   return json;
 }
 

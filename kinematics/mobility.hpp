@@ -20,16 +20,18 @@ enum class Verdict { determinate, overdriven, singular_home, uncertain, rigid };
 struct FreedomMode {
   std::string about;            ///< in words: which motion, where, with drives held or free
   Screw twist = Screw::Zero();  ///< of the platform, [w; v at base origin]
-  std::vector<std::vector<Transform>> frames;  ///< per frame, displacement of every body; may be one frame
+  std::vector<std::vector<Transform>>
+      frames;  ///< per frame, displacement of every body; may be one frame
 };
 
 /// How sure a check is and how hard it tries.
 struct MobilityOptions {
   std::uint64_t seed = 1;
-  int walks = 3;            ///< independent walks from a regular home (four times as many from a singular one)
-  double step = 0.12;       ///< length of one step along the manifold, in scaled coordinates [rad]
-  int steps = 4;            ///< steps per walk
-  bool evidence = true;     ///< also compute modes (frames); off for screening
+  int walks =
+      3;  ///< independent walks from a regular home (four times as many from a singular one)
+  double step = 0.12;    ///< length of one step along the manifold, in scaled coordinates [rad]
+  int steps = 4;         ///< steps per walk
+  bool evidence = true;  ///< also compute modes (frames); off for screening
 };
 
 /// What `check` finds out. Names as in the `check --json` contract.
@@ -60,9 +62,11 @@ struct MobilityReport {
 /// generic postures reached along the constraint manifold, the same with drives
 /// held, and the verdict. See docs/verdicts.md.
 /// Deterministic for a given seed. Cost: a few hundred µs to a few ms.
-[[nodiscard]] MobilityReport analyse_mobility(const Model& model, const MobilityOptions& options = {});
+[[nodiscard]] MobilityReport analyse_mobility(const Model& model,
+                                              const MobilityOptions& options = {});
 
 /// The `check --json` document.
-[[nodiscard]] nlohmann::ordered_json to_json(const MobilityReport& report, const Mechanism& mechanism);
+[[nodiscard]] nlohmann::ordered_json to_json(const MobilityReport& report,
+                                             const Mechanism& mechanism);
 
 }  // namespace polyglide

@@ -42,11 +42,13 @@ std::vector<Screw> joint_screws(const Joint& joint) {
     case JointType::universal:
       return {rotation_screw(axis, joint.at), rotation_screw(joint.axes[1], joint.at)};
     case JointType::spherical:
-      return {rotation_screw(Vector3::UnitX(), joint.at), rotation_screw(Vector3::UnitY(), joint.at),
+      return {rotation_screw(Vector3::UnitX(), joint.at),
+              rotation_screw(Vector3::UnitY(), joint.at),
               rotation_screw(Vector3::UnitZ(), joint.at)};
     case JointType::planar: {
       const Vector3 u = perpendicular(axis);
-      return {translation_screw(u), translation_screw(axis.cross(u)), rotation_screw(axis, joint.at)};
+      return {translation_screw(u), translation_screw(axis.cross(u)),
+              rotation_screw(axis, joint.at)};
     }
     case JointType::weld:
       return {};
@@ -90,7 +92,8 @@ Transform joint_motion(const Model& model, const Posture& posture, int joint) {
 Screw transformed(const Transform& motion, const Screw& screw) {
   Screw result;
   result.head<3>() = motion.linear() * screw.head<3>();
-  result.tail<3>() = motion.linear() * screw.tail<3>() + motion.translation().cross(result.head<3>());
+  result.tail<3>() =
+      motion.linear() * screw.tail<3>() + motion.translation().cross(result.head<3>());
   return result;
 }
 
@@ -100,8 +103,8 @@ void place_bodies(const Model& model, Posture& posture) {
     if (joint < 0) continue;
     const auto [first, second] = model.mechanism.joints[joint].bodies;
     const Transform motion = joint_motion(model, posture, joint);
-    posture.bodies[body] = body == second ? posture.bodies[first] * motion
-                                          : posture.bodies[second] * motion.inverse();
+    posture.bodies[body] =
+        body == second ? posture.bodies[first] * motion : posture.bodies[second] * motion.inverse();
   }
 }
 
@@ -171,7 +174,8 @@ void build_tree(Model& model) {
 void measure(Model& model) {
   std::vector<Vector3> points;
   for (const Joint& joint : model.mechanism.joints)
-    if (joint.type != JointType::prismatic && joint.type != JointType::weld) points.push_back(joint.at);
+    if (joint.type != JointType::prismatic && joint.type != JointType::weld)
+      points.push_back(joint.at);
   if (points.empty()) points.push_back(model.mechanism.tool);
   model.centre.setZero();
   for (const Vector3& point : points) model.centre += point;
@@ -221,7 +225,8 @@ void advance(const Model& model, Posture& posture, const Eigen::VectorXd& increm
       const double angle = turn.norm();
       if (angle > 0)
         posture.balls[j] =
-            (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * posture.balls[j]).normalized();
+            (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * posture.balls[j])
+                .normalized();
     } else {
       const int count = freedoms(joint.type);
       posture.q.segment(first, count) += increments.segment(first, count);

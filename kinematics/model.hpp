@@ -14,8 +14,8 @@ using Screw = Eigen::Matrix<double, 6, 1>;  ///< twist [w; v], v at the base ori
 /// One freedom of one joint, as a screw at home.
 struct Freedom {
   int joint = 0;
-  int index = 0;       ///< within the joint
-  Screw screw;         ///< unit twist at home [rad/s; m/s], base frame, about the base origin
+  int index = 0;  ///< within the joint
+  Screw screw;    ///< unit twist at home [rad/s; m/s], base frame, about the base origin
   bool translational = false;  ///< pure translation: coordinate in metres
 };
 
@@ -23,23 +23,23 @@ struct Freedom {
 /// compile(); share it between threads. Posture data live in Posture.
 struct Model {
   Mechanism mechanism;
-  double size = 1;                  ///< characteristic length [m]: half the spread of joint points
-  Vector3 centre = Vector3::Zero(); ///< moments are taken about this point [m]
-  std::vector<Freedom> freedoms;    ///< joint by joint, in the order of the file
-  std::vector<int> first_freedom;   ///< per joint, index of its first freedom
-  std::vector<int> drives;          ///< freedom indices, in the order of the file
-  std::vector<int> parent_joint;    ///< per body: tree joint towards the base, -1 for the base
-  std::vector<int> body_order;      ///< bodies from the base outwards
-  Eigen::MatrixXi path;             ///< bodies × joints: +1/-1 when the joint lies on the body's tree path
-  std::vector<int> loop_joints;     ///< joints not in the tree: one loop each
+  double size = 1;                   ///< characteristic length [m]: half the spread of joint points
+  Vector3 centre = Vector3::Zero();  ///< moments are taken about this point [m]
+  std::vector<Freedom> freedoms;     ///< joint by joint, in the order of the file
+  std::vector<int> first_freedom;    ///< per joint, index of its first freedom
+  std::vector<int> drives;           ///< freedom indices, in the order of the file
+  std::vector<int> parent_joint;     ///< per body: tree joint towards the base, -1 for the base
+  std::vector<int> body_order;       ///< bodies from the base outwards
+  Eigen::MatrixXi path;  ///< bodies × joints: +1/-1 when the joint lies on the body's tree path
+  std::vector<int> loop_joints;  ///< joints not in the tree: one loop each
 };
 
 /// Where everything is: joint coordinates from home, and the displacement of
 /// every body from home about the base frame (identity at home).
 struct Posture {
-  Eigen::VectorXd q;                    ///< one per freedom [m, rad]; spherical: unused (see balls)
+  Eigen::VectorXd q;  ///< one per freedom [m, rad]; spherical: unused (see balls)
   std::vector<Eigen::Quaterniond> balls;  ///< per joint: relative rotation of a spherical joint
-  std::vector<Transform> bodies;        ///< displacement from home, per body
+  std::vector<Transform> bodies;          ///< displacement from home, per body
 };
 
 /// Prepares a mechanism for computing.
@@ -66,7 +66,8 @@ void advance(const Model& model, Posture& posture, const Eigen::VectorXd& increm
 [[nodiscard]] Eigen::MatrixXd scaled_screws(const Model& model, const Eigen::MatrixXd& screws);
 
 /// Rows of the loop-closure Jacobian that belong to one loop, 6×F.
-[[nodiscard]] Eigen::MatrixXd loop_block(const Model& model, const Eigen::MatrixXd& scaled, int loop);
+[[nodiscard]] Eigen::MatrixXd loop_block(const Model& model, const Eigen::MatrixXd& scaled,
+                                         int loop);
 
 /// Loop-closure Jacobian, 6L×F, scaled: rows [w; v/size] taken at the centre,
 /// columns of translations per `size`. Kernel = instantaneous mobility.
@@ -74,7 +75,8 @@ void advance(const Model& model, Posture& posture, const Eigen::VectorXd& increm
 
 /// The same from freedom_screws() already at hand.
 [[nodiscard]] Eigen::MatrixXd closure_jacobian(const Model& model, const Eigen::MatrixXd& screws);
-[[nodiscard]] Eigen::MatrixXd body_jacobian(const Model& model, const Eigen::MatrixXd& screws, int body);
+[[nodiscard]] Eigen::MatrixXd body_jacobian(const Model& model, const Eigen::MatrixXd& screws,
+                                            int body);
 
 /// Closure error of every loop, scaled as the Jacobian's rows: [rotation vector;
 /// displacement/size]. Zero when assembled.

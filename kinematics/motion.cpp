@@ -13,7 +13,8 @@ namespace {
 std::vector<int> independent_rows(const Eigen::MatrixXd& matrix, int count) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix.transpose());
   std::vector<int> rows;
-  for (int i = 0; i < count; ++i) rows.push_back(static_cast<int>(qr.colsPermutation().indices()[i]));
+  for (int i = 0; i < count; ++i)
+    rows.push_back(static_cast<int>(qr.colsPermutation().indices()[i]));
   std::sort(rows.begin(), rows.end());
   return rows;
 }
@@ -37,20 +38,24 @@ Split split_freedoms(const Model& model, const std::vector<int>& active) {
   for (int i = 0; i < static_cast<int>(active.size()); ++i) {
     const int joint = model.freedoms[active[i]].joint;
     const auto loop = std::find(model.loop_joints.begin(), model.loop_joints.end(), joint);
-    if (loop == model.loop_joints.end()) split.tree.push_back(i);
-    else split.closing[loop - model.loop_joints.begin()].push_back(i);
+    if (loop == model.loop_joints.end())
+      split.tree.push_back(i);
+    else
+      split.closing[loop - model.loop_joints.begin()].push_back(i);
   }
   return split;
 }
 
 }  // namespace
 
-Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& screws, const std::vector<int>& active) {
+Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& screws,
+                      const std::vector<int>& active) {
   const Split split = split_freedoms(model, active);
   const Eigen::MatrixXd scaled = scaled_screws(model, screws);
   const int loops = static_cast<int>(model.loop_joints.size());
   Eigen::MatrixXd reduced(6 * loops, split.tree.size());
-  std::vector<Eigen::MatrixXd> rates(loops);  // of the closing joint per rate of the tree's freedoms
+  std::vector<Eigen::MatrixXd> rates(
+      loops);  // of the closing joint per rate of the tree's freedoms
   Eigen::Index rows = 0;
   for (int loop = 0; loop < loops; ++loop) {
     const Eigen::MatrixXd block = loop_block(model, scaled, loop)(Eigen::all, active);
@@ -60,8 +65,10 @@ Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& screws, const s
     const Eigen::MatrixXd turned = qr.householderQ().transpose() * tree;
     reduced.middleRows(rows, 6 - own.cols()) = turned.bottomRows(6 - own.cols());
     rows += 6 - own.cols();
-    rates[loop] = -qr.matrixQR().topRows(own.cols()).triangularView<Eigen::Upper>().solve(
-        turned.topRows(own.cols()));
+    rates[loop] = -qr.matrixQR()
+                       .topRows(own.cols())
+                       .triangularView<Eigen::Upper>()
+                       .solve(turned.topRows(own.cols()));
   }
   const Kernel tree = kernel_of(reduced.topRows(rows));
   Kernel kernel{tree.decision, Eigen::MatrixXd(active.size(), tree.basis.cols())};
@@ -80,8 +87,8 @@ Freedoms freedoms_at(const Model& model, const Posture& posture, const std::vect
   result.mobility = static_cast<int>(result.kernel.cols());
 
   const Eigen::VectorXd scale = freedom_scale(model);
-  Eigen::MatrixXd twists = columns(
-      body_jacobian(model, screws, model.mechanism.platform) * scale.asDiagonal(), active);
+  Eigen::MatrixXd twists =
+      columns(body_jacobian(model, screws, model.mechanism.platform) * scale.asDiagonal(), active);
   const Vector3 tool = posture.bodies[model.mechanism.platform] * model.mechanism.tool;
   for (Eigen::Index c = 0; c < twists.cols(); ++c) {
     const Vector3 w = twists.col(c).head<3>();
@@ -99,7 +106,8 @@ TaskSpace task_axes(const Freedoms& freedoms) {
   const int dof = freedoms.platform_rank.rank;
   if (dof == 0) return task;
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(angular, Eigen::ComputeFullV);
-  task.rotations = std::min(decide_rank(svd.singularValues(), freedoms.platform_rank.largest).rank, dof);
+  task.rotations =
+      std::min(decide_rank(svd.singularValues(), freedoms.platform_rank.largest).rank, dof);
   task.translations = dof - task.rotations;
 
   Eigen::MatrixXd translating = freedoms.platform.bottomRows(3);
@@ -117,8 +125,8 @@ double characteristic_length(const Model& model) {
   double square = 0;
   int count = 0;
   for (const Joint& joint : model.mechanism.joints) {
-    const bool on_platform = joint.bodies[0] == model.mechanism.platform ||
-                             joint.bodies[1] == model.mechanism.platform;
+    const bool on_platform =
+        joint.bodies[0] == model.mechanism.platform || joint.bodies[1] == model.mechanism.platform;
     if (!on_platform || joint.type == JointType::prismatic) continue;
     square += (joint.at - model.mechanism.tool).squaredNorm();
     ++count;

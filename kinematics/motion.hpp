@@ -14,11 +14,11 @@ namespace polyglide {
 
 /// Instantaneous freedoms of a mechanism at one posture.
 struct Freedoms {
-  RankDecision rank;          ///< of the loop-closure Jacobian
-  Eigen::MatrixXd kernel;     ///< active freedoms × mobility, scaled rates
-  Eigen::MatrixXd platform;   ///< 6×mobility: platform twist per kernel column, [w; v of tool/size]
+  RankDecision rank;         ///< of the loop-closure Jacobian
+  Eigen::MatrixXd kernel;    ///< active freedoms × mobility, scaled rates
+  Eigen::MatrixXd platform;  ///< 6×mobility: platform twist per kernel column, [w; v of tool/size]
   int mobility = 0;
-  RankDecision platform_rank; ///< of `platform`
+  RankDecision platform_rank;  ///< of `platform`
 };
 
 /// Freedoms with only `active` joint freedoms moving.

@@ -46,7 +46,8 @@ namespace {
 /// LAPACK's dgesdd: on screw matrices as right as Jacobi SVD and several times
 /// faster, while Eigen 3.4.0's BDCSVD is wrong on them.
 Eigen::VectorXd singular_values(Eigen::MatrixXd matrix, Eigen::MatrixXd* v) {
-  const auto rows = static_cast<lapack_int>(matrix.rows()), cols = static_cast<lapack_int>(matrix.cols());
+  const auto rows = static_cast<lapack_int>(matrix.rows()),
+             cols = static_cast<lapack_int>(matrix.cols());
   Eigen::VectorXd values(std::min(rows, cols));
   Eigen::MatrixXd left, right_transposed;
   if (v) {
@@ -54,8 +55,8 @@ Eigen::VectorXd singular_values(Eigen::MatrixXd matrix, Eigen::MatrixXd* v) {
     right_transposed.resize(cols, cols);
   }
   const lapack_int failed =
-      LAPACKE_dgesdd(LAPACK_COL_MAJOR, v ? 'A' : 'N', rows, cols, matrix.data(), rows, values.data(),
-                     left.data(), rows, right_transposed.data(), cols);
+      LAPACKE_dgesdd(LAPACK_COL_MAJOR, v ? 'A' : 'N', rows, cols, matrix.data(), rows,
+                     values.data(), left.data(), rows, right_transposed.data(), cols);
   if (failed != 0)
     throw std::invalid_argument(failed < 0 ? "singular_values: a matrix entry is not finite"
                                            : "singular_values: no convergence");

@@ -20,7 +20,8 @@ struct RankDecision {
 /// An empty or zero matrix has rank 0.
 /// @param reference a value known to be real, in the same scale (0 = none): with
 ///        it everything can be dropped, so noise beside it has rank 0.
-[[nodiscard]] RankDecision decide_rank(const Eigen::VectorXd& singular_values, double reference = 0);
+[[nodiscard]] RankDecision decide_rank(const Eigen::VectorXd& singular_values,
+                                       double reference = 0);
 
 /// Rank and kernel of a matrix.
 struct Kernel {

@@ -44,10 +44,11 @@ struct Pose {
 /// Result of inverse kinematics. Not reachable is a value, not an exception.
 struct InverseResult {
   bool reachable = false;
-  std::string limit;               ///< why not: "stroke leg1.guide max", "rod leg2.rod cannot reach", …; "" when reachable
-  Eigen::VectorXd drives;          ///< from home, order of Model::drives [m, rad]
-  Pose pose;                       ///< the full pose taken, parasitic parts included
-  double residual = 0;             ///< closure error [m, rad], scaled
+  std::string limit;  ///< why not: "stroke leg1.guide max", "rod leg2.rod cannot reach", …; "" when
+                      ///< reachable
+  Eigen::VectorXd drives;  ///< from home, order of Model::drives [m, rad]
+  Pose pose;               ///< the full pose taken, parasitic parts included
+  double residual = 0;     ///< closure error [m, rad], scaled
 };
 
 /// Drives for a pose. Only the machine's independent task coordinates are
@@ -65,7 +66,7 @@ struct InverseResult {
 
 struct ForwardSolution {
   Pose pose;
-  double residual = 0;     ///< largest closure error [m or rad, scaled by size]
+  double residual = 0;  ///< largest closure error [m or rad, scaled by size]
   bool closed_form = false;
   bool home_mode = false;  ///< connected with home by continuation of the drives
 };

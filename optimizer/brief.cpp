@@ -27,13 +27,14 @@ bool is_motion(const std::string& word) {
 }
 
 void read_motion(const json& document, Brief& brief, Problems& problems) {
-  static const std::vector<std::string> usual{"XYZA", "XYZB", "XYZC", "XYZ", "XYC", "XYZAB",
-                                              "XYZABC", "ZAB", "ABC", "XY"};
+  static const std::vector<std::string> usual{"XYZA",  "XYZB",   "XYZC", "XYZ", "XYC",
+                                              "XYZAB", "XYZABC", "ZAB",  "ABC", "XY"};
   brief.motion = document.at("motion");
   if (!is_motion(brief.motion)) {
-    problems.add(document.at("motion"),
-                 "the motion must be letters of XYZABC, each at most once and in this order, as in XYZA",
-                 did_you_mean(brief.motion, usual));
+    problems.add(
+        document.at("motion"),
+        "the motion must be letters of XYZABC, each at most once and in this order, as in XYZA",
+        did_you_mean(brief.motion, usual));
     return;
   }
   brief.translations = static_cast<int>(

@@ -12,16 +12,17 @@ namespace polyglide {
 
 /// Two arrangements to be held against each other.
 struct DuelRequest {
-  std::string a, b;             ///< catalog names
-  std::vector<std::string> by;  ///< choices of the space that make an arrangement; empty: the layouts themselves
+  std::string a, b;  ///< catalog names
+  std::vector<std::string>
+      by;  ///< choices of the space that make an arrangement; empty: the layouts themselves
 };
 
 /// What a machine is wanted for, and where to look for it ("polyglide/brief/1").
 struct Brief {
   std::string name, title, about;
-  std::string file;                   ///< as the user gave it, for messages
-  std::filesystem::path space;        ///< file of the design space
-  std::string motion;                 ///< letters of X Y Z A B C, ascending
+  std::string file;                     ///< as the user gave it, for messages
+  std::filesystem::path space;          ///< file of the design space
+  std::string motion;                   ///< letters of X Y Z A B C, ascending
   int translations = 0, rotations = 0;  ///< of that motion
   int drives = 0;
   Requirements requirements;

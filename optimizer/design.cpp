@@ -97,7 +97,8 @@ void DesignJob::screen() {
   for (const Candidate& candidate : enumeration_.candidates) {
     const std::string reason = rejection(candidate, brief_);
     if (reason.empty())
-      eligible.push_back({&candidate, candidate_layout(space_, candidate.raw_index, candidate.id), {}});
+      eligible.push_back(
+          {&candidate, candidate_layout(space_, candidate.raw_index, candidate.id), {}});
     else
       rejections_.add(reason, candidate);
   }
@@ -117,7 +118,8 @@ void DesignJob::screen() {
 
 void DesignJob::look() {
   in_parallel(static_cast<int>(families_.size()), options_, "look", [&](int i) {
-    families_[i].look = place_zone(problem_of(families_[i]), kLookEvaluations, seed_of(families_[i]));
+    families_[i].look =
+        place_zone(problem_of(families_[i]), kLookEvaluations, seed_of(families_[i]));
   });
 }
 
@@ -189,7 +191,8 @@ void DesignJob::rank() {
   }
   const std::vector<const Family*> list = by_score(true);
   std::vector<std::string> why(list.size());
-  in_parallel(static_cast<int>(list.size()), options_, "verify", [&](int i) { why[i] = shortfall(*list[i]); });
+  in_parallel(static_cast<int>(list.size()), options_, "verify",
+              [&](int i) { why[i] = shortfall(*list[i]); });
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (why[i].empty()) {
       ranking_.push_back(list[i]);
@@ -197,13 +200,15 @@ void DesignJob::rank() {
     }
     const Measures& best = list[i]->tuned->best.measures;
     for (const Candidate* member : list[i]->members)
-      rejections_.add(why[i], *member,
-                      {fmt::format("Tuned it covers {:.3g} % of the work zone's poses.", 100 * best.coverage)});
+      rejections_.add(
+          why[i], *member,
+          {fmt::format("Tuned it covers {:.3g} % of the work zone's poses.", 100 * best.coverage)});
   }
 }
 
 Json DesignJob::document() {
-  Json run = design_document({brief_, options_, space_, enumeration_, rejections_, families_, by_score(true), ranking_});
+  Json run = design_document(
+      {brief_, options_, space_, enumeration_, rejections_, families_, by_score(true), ranking_});
   provenance_.add_hash("brief", content_hash(brief_.document.dump()));
   provenance_.add_hash("space", space_.hash);
   provenance_.add_hash("catalog", catalog_hash());

@@ -9,9 +9,9 @@ namespace polyglide {
 
 /// What a design job found.
 struct DesignResult {
-  bool satisfied = false;     ///< some layout does what the brief asks
+  bool satisfied = false;      ///< some layout does what the brief asks
   nlohmann::ordered_json run;  ///< the stored run (docs/run-format.md), kind "design"; holds
-                              ///< the nearest misses under `nearest` when nothing satisfies
+                               ///< the nearest misses under `nearest` when nothing satisfies
 };
 
 /// The main job: from a brief to ranked layouts with dimensions.

@@ -34,8 +34,9 @@ Json all_indices_json() {
                   {"unit", ""},
                   {"scale", 1},
                   {"better", "lower"},
-                  {"about", "Constraints that repeat others: the machine moves only as far as its axes are "
-                            "exactly as drawn. Not weighed."}});
+                  {"about",
+                   "Constraints that repeat others: the machine moves only as far as its axes are "
+                   "exactly as drawn. Not weighed."}});
   return list;
 }
 
@@ -48,11 +49,12 @@ Json all_measures_json(const Family& family) {
 Json requirement_rows(const DesignFindings& findings) {
   const std::string moves = findings.families.empty() ? "not met" : "met";
   Json rows = Json::array();
-  rows.push_back({{"name", "motion"},
-                  {"asked", motion_text(findings.brief)},
-                  {"verdict", moves},
-                  {"note", fmt::format("{} families of layouts with this motion and a determinate verdict",
-                                       findings.families.size())}});
+  rows.push_back(
+      {{"name", "motion"},
+       {"asked", motion_text(findings.brief)},
+       {"verdict", moves},
+       {"note", fmt::format("{} families of layouts with this motion and a determinate verdict",
+                            findings.families.size())}});
   rows.push_back({{"name", "drives"},
                   {"asked", std::to_string(findings.brief.drives)},
                   {"verdict", moves},
@@ -69,7 +71,8 @@ Json requirement_rows(const DesignFindings& findings) {
 
 Json count_json(const DesignFindings& findings) {
   std::map<std::string, std::uint64_t> by_verdict;
-  for (const Candidate& candidate : findings.enumeration.candidates) ++by_verdict[candidate.verdict()];
+  for (const Candidate& candidate : findings.enumeration.candidates)
+    ++by_verdict[candidate.verdict()];
   std::size_t poses = 0;
   for (const Family& family : findings.families)
     poses += family.look.measures.poses + (family.tuned ? family.tuned->poses : 0);
@@ -122,11 +125,13 @@ Json rank_entry(const Family& family, int rank) {
 std::string answer(const DesignFindings& findings) {
   const std::size_t distinct = findings.enumeration.candidates.size();
   if (findings.satisfying.empty())
-    return fmt::format("None of {} distinct layouts satisfies the brief; the nearest misses and the reasons are below.",
-                       distinct);
+    return fmt::format(
+        "None of {} distinct layouts satisfies the brief; the nearest misses and the reasons are "
+        "below.",
+        distinct);
   const Family& best = *findings.satisfying.front();
-  return fmt::format("The best of {} distinct layouts is {} ({}), with a score of {:.3g}.", distinct, name_of(best),
-                     best.layout.title, best.tuned->best.score);
+  return fmt::format("The best of {} distinct layouts is {} ({}), with a score of {:.3g}.",
+                     distinct, name_of(best), best.layout.title, best.tuned->best.score);
 }
 
 /// Layouts as JSON, made side by side and put down in their order.
@@ -135,9 +140,10 @@ Json pages_json(const DesignFindings& findings, const std::vector<const Family*>
   in_parallel(static_cast<int>(families.size()), findings.options, "measure", [&](int i) {
     const Family& family = *families[i];
     const Tuned& tuned = *family.tuned;
-    pages[i] = layout_json({family.lead->id, family.known_as(), family.layout.title, family.lead->choices,
-                            family.layout, family.task, tuned.initial, tuned.best, tuned.search.history},
-                           findings.brief.requirements.zone, findings.options.seed);
+    pages[i] =
+        layout_json({family.lead->id, family.known_as(), family.layout.title, family.lead->choices,
+                     family.layout, family.task, tuned.initial, tuned.best, tuned.search.history},
+                    findings.brief.requirements.zone, findings.options.seed);
   });
   return Json(std::move(pages));
 }
@@ -172,8 +178,9 @@ void add_ranking(const DesignFindings& findings, Json& run) {
 
 Json design_document(const DesignFindings& findings) {
   const Brief& brief = findings.brief;
-  Json run{{"format", "polyglide/run/1"}, {"kind", "design"},           {"name", brief.name}, {"title", brief.title},
-           {"about", brief.about},        {"answer", answer(findings)}, {"brief", brief.document}};
+  Json run{{"format", "polyglide/run/1"}, {"kind", "design"},     {"name", brief.name},
+           {"title", brief.title},        {"about", brief.about}, {"answer", answer(findings)},
+           {"brief", brief.document}};
   run["requirements"] = requirement_rows(findings);
   run["counts"] = count_json(findings);
   run["indices"] = all_indices_json();

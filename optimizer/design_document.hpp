@@ -17,8 +17,8 @@ struct DesignFindings {
   const Space& space;
   const Enumeration& enumeration;
   const Rejections& rejections;
-  const std::vector<Family>& families;   ///< with the motion asked and a determinate verdict
-  std::vector<const Family*> tuned;      ///< best first
+  const std::vector<Family>& families;    ///< with the motion asked and a determinate verdict
+  std::vector<const Family*> tuned;       ///< best first
   std::vector<const Family*> satisfying;  ///< of the tuned: those that do what is asked, best first
 };
 

@@ -59,12 +59,15 @@ std::string list_of(const std::vector<std::string>& items) {
 std::string statement(const Side& winner, const Side& loser) {
   const Design &best = winner.best->tuned->best, &other = loser.best->tuned->best;
   if (best.score <= 0)
-    return fmt::format("Neither covers the work zone: {} reaches {:.3g} % of it, {} {:.3g} %.", winner.label,
-                       100 * best.measures.coverage, loser.label, 100 * other.measures.coverage);
+    return fmt::format("Neither covers the work zone: {} reaches {:.3g} % of it, {} {:.3g} %.",
+                       winner.label, 100 * best.measures.coverage, loser.label,
+                       100 * other.measures.coverage);
   std::string text = described(winner) + " wins";
   if (other.score <= 0)
-    return text + fmt::format(": it covers the work zone with a score of {:.3g}; the {} covers {:.3g} % of it.",
-                              best.score, loser.label, 100 * other.measures.coverage);
+    return text +
+           fmt::format(
+               ": it covers the work zone with a score of {:.3g}; the {} covers {:.3g} % of it.",
+               best.score, loser.label, 100 * other.measures.coverage);
   std::vector<std::string> better, worse;
   for (const Index& index : indices()) {
     const double a = best.measures[index.key], b = other.measures[index.key];
@@ -72,9 +75,11 @@ std::string statement(const Side& winner, const Side& loser) {
     const std::string item = fmt::format("{} {:+.1f} %", index.key, 100 * (a / b - 1));
     ((a > b) == index.higher ? better : worse).push_back(item);
   }
-  return text + fmt::format(" with a score of {:.3g} against {:.3g} ({:+.1f} %) of the {}. Better: {}. Worse: {}.",
-                            best.score, other.score, 100 * (best.score / other.score - 1), loser.label,
-                            list_of(better), list_of(worse));
+  return text +
+         fmt::format(
+             " with a score of {:.3g} against {:.3g} ({:+.1f} %) of the {}. Better: {}. Worse: {}.",
+             best.score, other.score, 100 * (best.score / other.score - 1), loser.label,
+             list_of(better), list_of(worse));
 }
 
 }  // namespace
@@ -88,11 +93,13 @@ void check_duel(const Brief& brief, const Space& space, const Enumeration& enume
   for (const Choice& choice : space.choices) choices.push_back(choice.name);
   for (const auto& name : source.at("between"))
     if (!enumeration.known.contains(name.get<std::string>()))
-      problems.add(name, "must be a known layout that the space contains", did_you_mean(name.get<std::string>(), known));
+      problems.add(name, "must be a known layout that the space contains",
+                   did_you_mean(name.get<std::string>(), known));
   if (source.contains("by"))
     for (const auto& name : source.at("by"))
       if (std::ranges::find(choices, name.get<std::string>()) == choices.end())
-        problems.add(name, "must be a choice of the space", did_you_mean(name.get<std::string>(), choices));
+        problems.add(name, "must be a choice of the space",
+                     did_you_mean(name.get<std::string>(), choices));
   problems.raise();
 }
 
@@ -114,12 +121,9 @@ Json duel_json(const DuelRequest& request, const Enumeration& enumeration,
   for (const Index& index : indices())
     rows.push_back({{"key", index.key}, {"a", of_a[index.key]}, {"b", of_b[index.key]}});
   const bool a_wins = a.best->tuned->best.score >= b.best->tuned->best.score;
-  return {{"a", a.best->lead->id},
-          {"b", b.best->lead->id},
-          {"a_label", a.label},
-          {"b_label", b.label},
-          {"rows", rows},
-          {"statement", a_wins ? statement(a, b) : statement(b, a)}};
+  return {{"a", a.best->lead->id}, {"b", b.best->lead->id},
+          {"a_label", a.label},    {"b_label", b.label},
+          {"rows", rows},          {"statement", a_wins ? statement(a, b) : statement(b, a)}};
 }
 
 }  // namespace polyglide

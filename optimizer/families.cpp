@@ -23,7 +23,8 @@ std::string cone_text(const Joint& joint) {
 }
 
 std::string leg_text(const Mechanism& mechanism, const Leg& leg, bool primary) {
-  return fmt::format("{} {} {} {}", static_cast<int>(leg.kind), leg.drive, primary, text(leg.side)) +
+  return fmt::format("{} {} {} {}", static_cast<int>(leg.kind), leg.drive, primary,
+                     text(leg.side)) +
          text(leg.base_point) + text(leg.direction) + text(leg.platform_point) + text(leg.length) +
          text(leg.stroke.min) + text(leg.stroke.max) + cone_text(mechanism.joints[leg.base_joint]) +
          cone_text(mechanism.joints[leg.platform_joint]) + '\n';
@@ -52,7 +53,8 @@ ParameterValues other_values(const Layout& layout) {
   ParameterValues values;
   for (const std::string& name : turnable(layout)) {
     const auto& parameter = *std::ranges::find(layout.parameters, name, &Parameter::name);
-    const double part = static_cast<double>(std::stoul(content_hash(name).substr(0, 4), nullptr, 16)) / 0xffff;
+    const double part =
+        static_cast<double>(std::stoul(content_hash(name).substr(0, 4), nullptr, 16)) / 0xffff;
     values[name] = std::lerp(parameter.value, parameter.max, 0.05 + 0.1 * part);
   }
   return values;

@@ -19,7 +19,8 @@ struct Eligible {
 /// Candidates with the same kinematics, so that one is tuned for all: they differ in
 /// joints that move alike, such as a rod's universal and spherical ends exchanged.
 struct Family {
-  const Candidate* lead = nullptr;  ///< a known layout where there is one, else the first of the space
+  const Candidate* lead =
+      nullptr;  ///< a known layout where there is one, else the first of the space
   std::vector<const Candidate*> members;
   Layout layout;  ///< of the lead
   TaskSpace task;

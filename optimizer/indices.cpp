@@ -92,7 +92,8 @@ void measure_zone(const Evaluator& evaluator, const Judge& judge, PoseBatch batc
 /// The usable workspace, by a sample of the box that holds it.
 struct Usable {
   double volume = 0;
-  std::vector<Vector3> extent;  ///< lower and upper corner of the accepted points; empty when there are none
+  std::vector<Vector3>
+      extent;  ///< lower and upper corner of the accepted points; empty when there are none
 };
 
 Usable measure_usable(const Evaluator& evaluator, const Judge& judge, int points) {
@@ -121,11 +122,14 @@ const std::vector<Index>& indices() {
       {"workspace", "Workspace for its size", "%", 100, true,
        "Volume of tool positions reached untilted, within all limits, with 1/κ above the bound and "
        "without crossing a singularity, divided by the volume of the machine's envelope: the box "
-       "around all joints over their strokes, with the platform wherever that volume and the work zone put it.",
+       "around all joints over their strokes, with the platform wherever that volume and the work "
+       "zone put it.",
        true},
       {"conditioning", "Mean conditioning in the zone", "", 1, true,
-       "Mean of 1/κ over all positions and tilts of the work zone; κ is the condition number of the map from "
-       "tool speeds to drive speeds, where a rotation counts by half the mean plan edge of the work zone. "
+       "Mean of 1/κ over all positions and tilts of the work zone; κ is the condition number of "
+       "the map from "
+       "tool speeds to drive speeds, where a rotation counts by half the mean plan edge of the "
+       "work zone. "
        "1: alike in every direction, 0: singular.",
        true},
       {"worst_conditioning", "Worst conditioning in the zone", "", 1, true,
@@ -140,7 +144,8 @@ const std::vector<Index>& indices() {
        "Volume of tool positions reached untilted, within all limits, with 1/κ above the bound.",
        false},
       {"envelope", "Envelope", "dm³", 1000, false,
-       "Box around all joints over their strokes, with the platform wherever the usable workspace and "
+       "Box around all joints over their strokes, with the platform wherever the usable workspace "
+       "and "
        "the work zone put it.",
        false}};
   return list;

@@ -17,7 +17,8 @@ struct Index {
   double scale = 1;    ///< shown value = stored value × scale
   bool higher = true;  ///< is more of it better?
   std::string about;   ///< the formula in words
-  bool weighable = false;  ///< may be an objective: dimensionless, in (0, 1] once the zone is covered
+  bool weighable =
+      false;  ///< may be an objective: dimensionless, in (0, 1] once the zone is covered
 };
 
 /// All indices, in the order of reports. The weighable ones:
@@ -54,7 +55,7 @@ struct Fineness {
   int across = 5, up = 3;  ///< lattice of the zone
   int tilts = 1;           ///< steps to either side
   int volume_points = 512;
-  bool whole = false;      ///< measure the volume also where the zone is not covered: no score needs it
+  bool whole = false;  ///< measure the volume also where the zone is not covered: no score needs it
 };
 
 inline constexpr Fineness kSearchFineness{5, 3, 1, 512};
@@ -63,8 +64,10 @@ inline constexpr Fineness kFinalFineness{17, 9, 2, 65536, true};
 
 /// The indices of one design with the zone at one place.
 struct Measures {
-  double coverage = 0;  ///< part of positions × orientations reachable with 1/κ above the bound, on one side of singularities
-  double credit = 0;    ///< the same, where a reachable but ill-conditioned pose earns a part: slope for a search
+  double coverage = 0;  ///< part of positions × orientations reachable with 1/κ above the bound, on
+                        ///< one side of singularities
+  double credit =
+      0;  ///< the same, where a reachable but ill-conditioned pose earns a part: slope for a search
   double workspace = 0, conditioning = 0, worst_conditioning = 0, compactness = 0;
   double volume = 0;    ///< V_use [m³]
   double envelope = 0;  ///< V_envelope [m³]

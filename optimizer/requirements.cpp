@@ -41,7 +41,8 @@ std::vector<std::pair<std::string, double>> read_weights(const json& document, c
                                                          Problems& problems) {
   std::vector<std::pair<std::string, double>> weights;
   if (!document.contains(key)) {
-    problems.add_missing(document, fmt::format("\"{}\" must be given: what makes a design good", key));
+    problems.add_missing(document,
+                         fmt::format("\"{}\" must be given: what makes a design good", key));
     return weights;
   }
   const json& value = document.at(key);
@@ -84,7 +85,9 @@ Requirements read_requirements(const json& document, const char* weights_key, Pr
 
 void check_name(const json& document, Problems& problems) {
   const std::string name = document.at("name");
-  const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
+  const auto fits = [](unsigned char c) {
+    return std::isalnum(c) || c == '-' || c == '_' || c == '.';
+  };
   if (name.front() == '.' || !std::ranges::all_of(name, fits))
     problems.add(document.at("name"), "a name consists of letters, digits, '-', '_' and '.'");
 }

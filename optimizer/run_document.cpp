@@ -26,9 +26,12 @@ double value_of(const Parameter& parameter, const ParameterValues& values) {
 
 std::string unit_of(const Parameter& parameter, const Units& units) {
   switch (parameter.quantity) {
-    case Quantity::length: return units.length;
-    case Quantity::angle: return units.angle;
-    case Quantity::none: break;
+    case Quantity::length:
+      return units.length;
+    case Quantity::angle:
+      return units.angle;
+    case Quantity::none:
+      break;
   }
   return "";
 }
@@ -53,7 +56,8 @@ Json triple(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 /// Edges of the zone along base axes.
 Vector3 zone_extent(const Zone& zone, const TaskSpace& task) {
   Eigen::AlignedBox3d box;
-  for (const Vector3& position : zone_positions(zone, task.rotation_axis, 9, 2)) box.extend(position);
+  for (const Vector3& position : zone_positions(zone, task.rotation_axis, 9, 2))
+    box.extend(position);
   return box.sizes();
 }
 

@@ -28,7 +28,8 @@ struct ShownLayout {
                                                  std::uint64_t seed);
 
 /// {"rod": 812.3, …}: the parameters a layout uses, file units; turned ones as given.
-[[nodiscard]] nlohmann::ordered_json values_json(const Layout& layout, const ParameterValues& values);
+[[nodiscard]] nlohmann::ordered_json values_json(const Layout& layout,
+                                                 const ParameterValues& values);
 
 /// {index key: value} of all indices.
 [[nodiscard]] nlohmann::ordered_json measures_json(const Measures& measures);

@@ -31,8 +31,8 @@ std::string uncertainty(const nlohmann::json& check) {
 std::string motion_mismatch(const Candidate& candidate, const Brief& brief) {
   const auto& platform = candidate.check.at("platform");
   const std::string axes = candidate.axes();
-  const std::string has = fmt::format("motion: {} ({}), asked {}", candidate.pattern(), axes,
-                                      motion_text(brief));
+  const std::string has =
+      fmt::format("motion: {} ({}), asked {}", candidate.pattern(), axes, motion_text(brief));
   if (platform.at("translations") != brief.translations ||
       platform.at("rotations") != brief.rotations)
     return has;
@@ -69,7 +69,8 @@ std::string rejection(const Candidate& candidate, const Brief& brief) {
   const std::string verdict = candidate.verdict();
   if (verdict == "rigid") return "rigid: the platform cannot move";
   if (verdict == "uncertain") return uncertainty(candidate.check);
-  if (verdict == "singular-home") return "singular-home: the drives lose hold of the platform at home";
+  if (verdict == "singular-home")
+    return "singular-home: the drives lose hold of the platform at home";
   if (std::string mismatch = motion_mismatch(candidate, brief); !mismatch.empty()) return mismatch;
   if (verdict == "overdriven") return "overdriven: more drives than freedoms they control";
   const int drives = candidate.check.at("drives").at("count");
@@ -84,7 +85,8 @@ std::string axis_rejection(const TaskSpace& task, const Brief& brief) {
   if (task.rotation_axis.isZero()) return "motion: the rotation axis turns while the machine moves";
   const double rise = std::abs(task.rotation_axis.z());
   if (asked_vertical ? rise < 1 - kLevel : rise > kLevel)
-    return fmt::format("motion: the rotation axis is not {}", asked_vertical ? "vertical" : "horizontal");
+    return fmt::format("motion: the rotation axis is not {}",
+                       asked_vertical ? "vertical" : "horizontal");
   return "";
 }
 
@@ -112,7 +114,8 @@ void Rejections::add_unbuildable(const Unbuildable& cause) {
 std::vector<const Rejections::Group*> Rejections::by_count() const {
   std::vector<const Group*> list;
   for (const auto& [reason, group] : groups_) list.push_back(&group);
-  std::ranges::stable_sort(list, [](const Group* a, const Group* b) { return a->count > b->count; });
+  std::ranges::stable_sort(list,
+                           [](const Group* a, const Group* b) { return a->count > b->count; });
   return list;
 }
 
@@ -136,8 +139,10 @@ Json Rejections::json(const Space& space, const RunOptions& options) const {
   std::size_t next = 0;
   for (const Group* group : groups) {
     Json of_group = Json::array();
-    for (std::size_t i = 0; i < group->examples.size(); ++i) of_group.push_back(std::move(drawn[next++]));
-    list.push_back({{"reason", group->reason}, {"count", group->count}, {"examples", std::move(of_group)}});
+    for (std::size_t i = 0; i < group->examples.size(); ++i)
+      of_group.push_back(std::move(drawn[next++]));
+    list.push_back(
+        {{"reason", group->reason}, {"count", group->count}, {"examples", std::move(of_group)}});
   }
   return list;
 }

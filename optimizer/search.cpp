@@ -18,7 +18,8 @@ void check(const SearchProblem& problem, const SearchOptions& options) {
   for (std::size_t i = 0; i < size; ++i)
     if (!(problem.lower[i] <= problem.upper[i]) || !std::isfinite(problem.start[i]))
       throw std::invalid_argument("maximise: bounds out of order, or a start that is no number");
-  if (options.evaluations < 1) throw std::invalid_argument("maximise: needs at least one evaluation");
+  if (options.evaluations < 1)
+    throw std::invalid_argument("maximise: needs at least one evaluation");
 }
 
 /// One search: counts calls, remembers the best, and shows NLopt only the variables

@@ -29,7 +29,8 @@ struct SearchSummary {
   std::vector<double> best;
   double value = 0;     ///< at `best`, never below that at the start
   int evaluations = 0;  ///< calls made
-  std::vector<std::pair<int, double>> history;  ///< (calls so far, best value), one entry per improvement
+  std::vector<std::pair<int, double>>
+      history;          ///< (calls so far, best value), one entry per improvement
   std::string stopped;  ///< "converged", "evaluations used up" or "nothing to turn"
   bool usable = false;  ///< some value was finite; else `best` is the start
 };
@@ -45,6 +46,7 @@ struct SearchSummary {
 /// @throws std::invalid_argument bounds or start that do not fit each other.
 /// Source: Kaelo & Ali, JOTA 130 (2006), for the global; Rowan (1990), for the local
 /// stage; both as in NLopt (GN_CRS2_LM, LN_SBPLX).
-[[nodiscard]] SearchSummary maximise(const SearchProblem& problem, const SearchOptions& options = {});
+[[nodiscard]] SearchSummary maximise(const SearchProblem& problem,
+                                     const SearchOptions& options = {});
 
 }  // namespace polyglide

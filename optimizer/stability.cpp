@@ -46,7 +46,8 @@ std::vector<int> ranks_under(const std::vector<RankedMeasures>& ranked, const We
   std::iota(order.begin(), order.end(), 0);
   std::vector<double> scores;
   for (const RankedMeasures& one : ranked) scores.push_back(score(one.measures, weights));
-  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
+  std::ranges::stable_sort(order,
+                           [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
   std::vector<int> ranks(ranked.size());
   for (std::size_t place = 0; place < order.size(); ++place)
     ranks[order[place]] = static_cast<int>(place) + 1;
@@ -70,11 +71,13 @@ std::string statement(const std::vector<RankedMeasures>& ranked, const std::vect
       where += (where.empty() ? "" : "; ") + lowered(schemes[s].label);
     }
   }
-  std::string text = fmt::format("{} is first in {} of {} ways to weigh the indices.", ranked[0].name, kept,
-                                 schemes.size());
-  for (const auto& [name, where] : winners) text += fmt::format(" {} is first with: {}.", name, where);
-  return text + fmt::format(" The order differs most with: {} (Kendall's tau {:.2f} to the stated order).",
-                            lowered(schemes[lowest].label), taus[lowest]);
+  std::string text = fmt::format("{} is first in {} of {} ways to weigh the indices.",
+                                 ranked[0].name, kept, schemes.size());
+  for (const auto& [name, where] : winners)
+    text += fmt::format(" {} is first with: {}.", name, where);
+  return text +
+         fmt::format(" The order differs most with: {} (Kendall's tau {:.2f} to the stated order).",
+                     lowered(schemes[lowest].label), taus[lowest]);
 }
 
 }  // namespace
@@ -93,11 +96,14 @@ std::vector<Scheme> schemes_for(const Weights& stated) {
   Weights equal = stated;
   for (auto& [key, weight] : equal) weight = 1;
   add("Stated indices, equal weights", equal);
-  add("Worst instead of mean conditioning", exchanged(stated, "conditioning", "worst_conditioning"));
-  add("Mean instead of worst conditioning", exchanged(stated, "worst_conditioning", "conditioning"));
+  add("Worst instead of mean conditioning",
+      exchanged(stated, "conditioning", "worst_conditioning"));
+  add("Mean instead of worst conditioning",
+      exchanged(stated, "worst_conditioning", "conditioning"));
   for (const auto& [key, weight] : stated) {
     Weights rest;
-    std::ranges::copy_if(stated, std::back_inserter(rest), [&](const auto& one) { return one.first != key; });
+    std::ranges::copy_if(stated, std::back_inserter(rest),
+                         [&](const auto& one) { return one.first != key; });
     add(fmt::format("Without {}", lowered(label_of(key))), rest);
   }
   for (const std::string& key : objective_words()) add(label_of(key) + " alone", {{key, 1.0}});
@@ -107,8 +113,7 @@ std::vector<Scheme> schemes_for(const Weights& stated) {
 double kendall_tau(const std::vector<int>& a, const std::vector<int>& b) {
   int balance = 0, pairs = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j, ++pairs)
-      balance += (a[i] < a[j]) == (b[i] < b[j]) ? 1 : -1;
+    for (std::size_t j = 0; j < i; ++j, ++pairs) balance += (a[i] < a[j]) == (b[i] < b[j]) ? 1 : -1;
   return pairs > 0 ? static_cast<double>(balance) / pairs : 1;
 }
 

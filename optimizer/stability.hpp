@@ -18,7 +18,8 @@ struct Scheme {
 /// The stated weights first; then equal weights, each index alone, the stated ones
 /// without each of theirs, and with mean and worst conditioning exchanged. Schemes
 /// that weigh alike are listed once.
-[[nodiscard]] std::vector<Scheme> schemes_for(const std::vector<std::pair<std::string, double>>& stated);
+[[nodiscard]] std::vector<Scheme> schemes_for(
+    const std::vector<std::pair<std::string, double>>& stated);
 
 /// A ranked design, by its id, as the stated weights rank it.
 struct RankedMeasures {

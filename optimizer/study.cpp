@@ -42,8 +42,9 @@ void read_turned(const json& document, Study& study, Problems& problems) {
       problems.add(value, fmt::format("{} has no parameter \"{}\"", study.machine.name, name),
                    did_you_mean(name, names));
     else if (std::ranges::find(free, name) == free.end())
-      problems.add(value, fmt::format("\"{}\" cannot be turned: {} gives it no room between min and max", name,
-                                      study.machine.name));
+      problems.add(value,
+                   fmt::format("\"{}\" cannot be turned: {} gives it no room between min and max",
+                               name, study.machine.name));
     else
       study.turn.push_back(name);
   }
@@ -74,8 +75,9 @@ Json requirement_rows(const Study& study, const Tuned& tuned) {
   const bool covered = tuned.best.measures.coverage == 1;
   for (Json& row : rows) {
     row["verdict"] = covered ? "met" : "not met";
-    row["note"] = fmt::format("{:.4g} % of the zone's poses; {:.4g} % with the machine as it stands",
-                              100 * tuned.best.measures.coverage, 100 * tuned.initial.measures.coverage);
+    row["note"] =
+        fmt::format("{:.4g} % of the zone's poses; {:.4g} % with the machine as it stands",
+                    100 * tuned.best.measures.coverage, 100 * tuned.initial.measures.coverage);
     if (row["name"] == "envelope") {
       row["verdict"] = "met";
       row["note"] = "kept by the constraints below";
@@ -105,9 +107,11 @@ std::string shares_text(const TuneProblem& problem, const Tuned& tuned) {
   std::string text;
   for (const std::string& name : problem.turn) {
     ParameterValues values = tuned.best.values;
-    const double before = std::ranges::find(problem.layout.parameters, name, &Parameter::name)->value;
+    const double before =
+        std::ranges::find(problem.layout.parameters, name, &Parameter::name)->value;
     values[name] = before;
-    const TuneProblem without{problem.layout, problem.task, problem.requirements, {}, problem.constraints, values};
+    const TuneProblem without{problem.layout,      problem.task, problem.requirements, {},
+                              problem.constraints, values};
     const Design design = place_zone(without, 60, 1, kFinalFineness);
     text += fmt::format("{}{} back at {:g} {}", text.empty() ? "" : "; ", name, before,
                         design.score > 0 ? fmt::format("leaves {:.3g}", design.score)
@@ -121,21 +125,24 @@ std::string finding(const TuneProblem& problem, const Tuned& tuned) {
   if (to.score <= from.score)
     return "No better dimensions were found: the machine stands at the best this search knows.";
   std::string text = from.score > 0
-                         ? fmt::format("The objective rises from {:.3g} to {:.3g} ({})", from.score, to.score,
-                                       change_text(from.score, to.score))
-                         : fmt::format("The zone, not covered as the machine stands, is covered with an objective of {:.3g}",
-                                       to.score);
+                         ? fmt::format("The objective rises from {:.3g} to {:.3g} ({})", from.score,
+                                       to.score, change_text(from.score, to.score))
+                         : fmt::format(
+                               "The zone, not covered as the machine stands, is covered with an "
+                               "objective of {:.3g}",
+                               to.score);
   for (const auto& [key, weight] : problem.requirements.objectives)
     text += fmt::format(", {} {:.3g} → {:.3g} ({})", key, from.measures[key], to.measures[key],
                         change_text(from.measures[key], to.measures[key]));
-  text += fmt::format("; usable workspace {:.4g} → {:.4g} dm³, worst conditioning in the zone {:.3g} → {:.3g}. ",
-                      from.measures.volume * 1e3, to.measures.volume * 1e3,
-                      from.measures.worst_conditioning, to.measures.worst_conditioning);
+  text += fmt::format(
+      "; usable workspace {:.4g} → {:.4g} dm³, worst conditioning in the zone {:.3g} → {:.3g}. ",
+      from.measures.volume * 1e3, to.measures.volume * 1e3, from.measures.worst_conditioning,
+      to.measures.worst_conditioning);
   return text + "With one dimension set back: " + shares_text(problem, tuned) + ".";
 }
 
-Json rank_row(int rank, const std::string& id, const std::string& title, const Study& study, const Design& design,
-              double initial_score) {
+Json rank_row(int rank, const std::string& id, const std::string& title, const Study& study,
+              const Design& design, double initial_score) {
   return {{"rank", rank},
           {"layout", id},
           {"known_as", nullptr},
@@ -153,27 +160,45 @@ Json duel_json(const std::string& tuned_id, const std::string& given_id, const T
     rows.push_back({{"key", index.key},
                     {"a", tuned.best.measures[index.key]},
                     {"b", tuned.initial.measures[index.key]}});
-  return {{"a", tuned_id}, {"b", given_id}, {"a_label", "tuned"}, {"b_label", "as it stands"}, {"rows", rows},
-          {"statement", statement}};
+  return {{"a", tuned_id},      {"b", given_id},
+          {"a_label", "tuned"}, {"b_label", "as it stands"},
+          {"rows", rows},       {"statement", statement}};
 }
 
-Json run_json(const Study& study, const TuneProblem& problem, const Tuned& tuned, const RunOptions& options) {
+Json run_json(const Study& study, const TuneProblem& problem, const Tuned& tuned,
+              const RunOptions& options) {
   const std::string given = study.machine.name, better = given + "-tuned";
   const std::string statement = finding(problem, tuned);
-  Json run{{"format", "polyglide/run/1"}, {"kind", "study"},   {"name", study.name}, {"title", study.title},
-           {"about", study.about},        {"answer", statement}, {"brief", study.document}};
+  Json run{{"format", "polyglide/run/1"}, {"kind", "study"},      {"name", study.name},
+           {"title", study.title},        {"about", study.about}, {"answer", statement},
+           {"brief", study.document}};
   run["requirements"] = requirement_rows(study, tuned);
   run["counts"] = {{"tuned", 1}, {"evaluations", tuned.search.evaluations}, {"poses", tuned.poses}};
   run["indices"] = indices_json();
-  run["ranking"] = {rank_row(1, better, study.machine.title + ", tuned", study, tuned.best, tuned.initial.score),
-                    rank_row(2, given, study.machine.title + ", as it stands", study, tuned.initial, tuned.initial.score)};
+  run["ranking"] = {
+      rank_row(1, better, study.machine.title + ", tuned", study, tuned.best, tuned.initial.score),
+      rank_row(2, given, study.machine.title + ", as it stands", study, tuned.initial,
+               tuned.initial.score)};
   run["duel"] = duel_json(better, given, tuned, statement);
   const std::vector<std::pair<int, double>> none;
-  const std::vector<ShownLayout> shown{
-      {better, "", study.machine.title + ", tuned", {}, study.machine, problem.task, tuned.initial, tuned.best,
-       tuned.search.history},
-      {given, "", study.machine.title + ", as it stands", {}, study.machine, problem.task, tuned.initial,
-       tuned.initial, none}};
+  const std::vector<ShownLayout> shown{{better,
+                                        "",
+                                        study.machine.title + ", tuned",
+                                        {},
+                                        study.machine,
+                                        problem.task,
+                                        tuned.initial,
+                                        tuned.best,
+                                        tuned.search.history},
+                                       {given,
+                                        "",
+                                        study.machine.title + ", as it stands",
+                                        {},
+                                        study.machine,
+                                        problem.task,
+                                        tuned.initial,
+                                        tuned.initial,
+                                        none}};
   std::vector<Json> pages(shown.size());
   in_parallel(static_cast<int>(shown.size()), options, "measure", [&](int i) {
     pages[i] = layout_json(shown[i], study.requirements.zone, options.seed);
@@ -205,7 +230,9 @@ Study parse_study(json document, const std::string& file) {
   return study;
 }
 
-Study load_study(const std::filesystem::path& file) { return parse_study(read_json(file), file.string()); }
+Study load_study(const std::filesystem::path& file) {
+  return parse_study(read_json(file), file.string());
+}
 
 StudyResult run_study(const Study& study, const RunOptions& options) {
   Provenance provenance(options);
@@ -213,7 +240,8 @@ StudyResult run_study(const Study& study, const RunOptions& options) {
   provenance.add_hash("machine", content_hash(study.machine.document.dump()));
   const TaskSpace task = prepare(expand(study.machine)).task;
   TuneProblem problem{study.machine, task, study.requirements, study.turn, study.constraints};
-  RunProgress progress{"tune", 0, 1.5 * study.evaluations};  // polishing takes up to half as much again
+  RunProgress progress{"tune", 0,
+                       1.5 * study.evaluations};  // polishing takes up to half as much again
   if (options.progress)
     problem.evaluated = [&] {
       ++progress.done;

@@ -34,9 +34,9 @@ struct Study {
 
 /// What came out of a study.
 struct StudyResult {
-  Tuned tuned;                       ///< `initial` is the machine as it stands
-  bool satisfied = false;            ///< the best covers the zone and keeps all constraints
-  nlohmann::ordered_json run;        ///< the stored run (docs/run-format.md), kind "study"
+  Tuned tuned;                 ///< `initial` is the machine as it stands
+  bool satisfied = false;      ///< the best covers the zone and keeps all constraints
+  nlohmann::ordered_json run;  ///< the stored run (docs/run-format.md), kind "study"
 };
 
 /// Tunes the machine and compares it with how it stands, both under the same fine look.

@@ -104,7 +104,8 @@ class Tuner {
 
   std::optional<Machine> build(const ParameterValues& values) const {
     try {
-      return machine_for(expand(problem_.layout, values), problem_.task, problem_.requirements.zone);
+      return machine_for(expand(problem_.layout, values), problem_.task,
+                         problem_.requirements.zone);
     } catch (const InputError&) {  // rods that do not reach: a point of the search, no mistake
       return std::nullopt;
     }
@@ -151,8 +152,7 @@ std::vector<double> zone_place(const TuneProblem& problem, int evaluations, std:
   const TuneProblem fixed = without_parameters(problem);
   Tuner tuner(fixed);
   const std::vector<double> start = tuner.best_height();
-  const SearchSummary found =
-      tuner.search(start, {evaluations, seed, 0.3, 1e-3}, kSearchFineness);
+  const SearchSummary found = tuner.search(start, {evaluations, seed, 0.3, 1e-3}, kSearchFineness);
   poses += tuner.poses();
   return found.best;
 }

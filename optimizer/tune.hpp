@@ -31,7 +31,7 @@ struct TuneProblem {
   const Requirements& requirements;
   std::vector<std::string> turn;  ///< parameters that may change, each with min < max
   std::vector<Constraint> constraints;
-  ParameterValues fixed = {};     ///< of other parameters, where they differ from the file
+  ParameterValues fixed = {};            ///< of other parameters, where they differ from the file
   std::function<void()> evaluated = {};  ///< called after every look at a design
 };
 
@@ -40,9 +40,9 @@ struct TuneProblem {
 
 /// One design: dimensions, where the zone lies in it, and what it is worth.
 struct Design {
-  ParameterValues values;           ///< of the turned and `fixed` parameters, file units
+  ParameterValues values;            ///< of the turned and `fixed` parameters, file units
   Vector3 center = Vector3::Zero();  ///< of the zone [m]
-  Measures measures;                ///< at the fineness of the last look
+  Measures measures;                 ///< at the fineness of the last look
   double score = 0;
 };
 

@@ -11,8 +11,8 @@ constexpr const char* kTunings = "tuning";  // kind in the store
 constexpr int kVersion = 1;                 // to be raised when a tuning would come out differently
 
 json to_json(const Measures& m) {
-  return {m.coverage, m.credit, m.workspace, m.conditioning, m.worst_conditioning, m.compactness,
-          m.volume, m.envelope, m.poses};
+  return {m.coverage,    m.credit, m.workspace, m.conditioning, m.worst_conditioning,
+          m.compactness, m.volume, m.envelope,  m.poses};
 }
 
 Measures measures_from(const json& list) {
@@ -34,8 +34,9 @@ Design design_from(const json& value) {
 }
 
 json to_json(const SearchSummary& search) {
-  return {{"best", search.best},       {"value", search.value},     {"evaluations", search.evaluations},
-          {"history", search.history}, {"stopped", search.stopped}, {"usable", search.usable}};
+  return {
+      {"best", search.best},       {"value", search.value},     {"evaluations", search.evaluations},
+      {"history", search.history}, {"stopped", search.stopped}, {"usable", search.usable}};
 }
 
 SearchSummary search_from(const json& value) {

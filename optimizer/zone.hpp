@@ -13,7 +13,8 @@ namespace polyglide {
 /// displacements of the tool point from home, base frame.
 struct Zone {
   enum class Shape { box, cylinder } shape = Shape::box;
-  Vector3 size = Vector3::Zero();  ///< [m] edges of the box; (diameter, diameter, height) of the upright cylinder
+  Vector3 size = Vector3::Zero();  ///< [m] edges of the box; (diameter, diameter, height) of the
+                                   ///< upright cylinder
   double tilt = 0;                 ///< [rad] rotation asked to either side
   std::optional<Vector3> center;   ///< [m]; nothing: wherever it fits best
 };

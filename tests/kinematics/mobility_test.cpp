@@ -15,7 +15,8 @@ MobilityReport check(const Mechanism& mechanism) { return analyse_mobility(compi
 MobilityReport check(const std::string& name) { return check(expand(find_layout(name))); }
 
 /// The layout with the joint word of both ends of one limb's rods replaced.
-Mechanism with_end(const std::string& name, int limb, const char* end, const nlohmann::json& change) {
+Mechanism with_end(const std::string& name, int limb, const char* end,
+                   const nlohmann::json& change) {
   nlohmann::json document = find_layout(name).document;
   document["limbs"][limb]["rods"][end].update(change);
   return expand(parse_layout(document, name));
@@ -78,14 +79,16 @@ TEST(TableOne, Layout6MovesThreeTranslationsAndARotationExactlyConstrained) {
 
 TEST(TableOne, OneChangedJointChangesTheVerdict) {
   // One pair's cardan axis turned by 90°: layout 1 loses a motion and fights itself.
-  EXPECT_EQ(check(with_end("table1-1", 0, "carriage", {{"axis", "y"}})).verdict, Verdict::overdriven);
+  EXPECT_EQ(check(with_end("table1-1", 0, "carriage", {{"axis", "y"}})).verdict,
+            Verdict::overdriven);
   // Balls instead of cardans below one pair only take redundant constraints away.
   const MobilityReport balls = check(with_end("table1-1", 0, "platform", {{"joint", "spherical"}}));
   EXPECT_EQ(balls.verdict, Verdict::determinate);
   EXPECT_LT(balls.redundant_constraints, check("table1-1").redundant_constraints);
   // A cardan in place of layout 2's balls takes the freedoms that were left, but not at home.
-  EXPECT_EQ(check(with_end("table1-2", 0, "platform", {{"joint", "universal"}, {"axis", "x"}})).verdict,
-            Verdict::singular_home);
+  EXPECT_EQ(
+      check(with_end("table1-2", 0, "platform", {{"joint", "universal"}, {"axis", "x"}})).verdict,
+      Verdict::singular_home);
 }
 
 // --- Laws for every catalog entry ---
@@ -141,9 +144,10 @@ TEST_P(CatalogVerdict, DoesNotDependOnUnitFrameOrOrder) {
   for (double scale : {1e-3, 1.0, 1e3}) {
     SCOPED_TRACE(testing::Message() << "scale " << scale);
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-    motion.linear() = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
-                          .normalized()
-                          .toRotationMatrix();
+    motion.linear() =
+        Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
+            .normalized()
+            .toRotationMatrix();
     motion.translation() = scale * Vector3(normal(random), normal(random), normal(random));
     expect_same_verdict(reference, check(moved(renumbered(mechanism, random), motion, scale)));
   }
@@ -185,7 +189,8 @@ TEST(Mobility, WithoutDrivesAMovingPlatformIsUncertain) {
 
 TEST(Mobility, NamesTheRodsThatSpinIdly) {
   // A rod between two balls spins without moving anything.
-  const MobilityReport report = check(with_end("table1-6", 1, "carriage", {{"joint", "spherical"}}));
+  const MobilityReport report =
+      check(with_end("table1-6", 1, "carriage", {{"joint", "spherical"}}));
   EXPECT_EQ(report.idle, 2);
   EXPECT_EQ(report.idle_rods.size(), 2u);
 }

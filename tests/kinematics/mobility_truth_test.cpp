@@ -30,7 +30,9 @@ std::vector<std::string> cases(const std::string& set) {
 
 std::string test_name(const testing::TestParamInfo<std::string>& info) {
   std::string name = info.param;
-  std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); },
+      '_');
   return "case_" + name;
 }
 
@@ -47,7 +49,8 @@ TEST_P(PublishedMechanism, HasTheExpectedCountsAndVerdict) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Truth, PublishedMechanism, testing::ValuesIn(cases("mobility")), test_name);
+INSTANTIATE_TEST_SUITE_P(Truth, PublishedMechanism, testing::ValuesIn(cases("mobility")),
+                         test_name);
 
 class DatabaseMachine : public testing::TestWithParam<std::string> {};
 

@@ -18,11 +18,13 @@ double uniform(std::mt19937_64& random, double low, double high) {
 using Coordinates = Eigen::Matrix<double, 6, 1>;
 
 /// A posture reached by moving every drive by up to `reach` [m or rad/size].
-std::optional<Posture> random_reached(const Machine& machine, std::mt19937_64& random, double reach) {
+std::optional<Posture> random_reached(const Machine& machine, std::mt19937_64& random,
+                                      double reach) {
   Eigen::VectorXd drives(static_cast<Eigen::Index>(machine.model.drives.size()));
   for (Eigen::Index d = 0; d < drives.size(); ++d)
-    drives[d] = uniform(random, -reach, reach) *
-                (machine.model.freedoms[machine.model.drives[d]].translational ? machine.model.size : 1);
+    drives[d] =
+        uniform(random, -reach, reach) *
+        (machine.model.freedoms[machine.model.drives[d]].translational ? machine.model.size : 1);
   Posture posture = home(machine.model);
   if (!solve_forward_from(machine, drives, posture)) return std::nullopt;
   return posture;
@@ -37,8 +39,8 @@ Pose pose_at(const Machine& machine, const Posture& posture) {
 std::vector<std::string> determinate_entries() {
   std::vector<std::string> names;
   for (const std::string& name : catalog_names())
-    if (analyse_mobility(compile(expand(find_layout(name))), {.walks = 2, .evidence = false}).verdict ==
-        Verdict::determinate)
+    if (analyse_mobility(compile(expand(find_layout(name))), {.walks = 2, .evidence = false})
+            .verdict == Verdict::determinate)
       names.push_back(name);
   return names;
 }
@@ -62,9 +64,11 @@ TEST_P(CatalogMachine, InverseUndoesForward) {
     if (!posture) continue;
     ++tried;
     const Pose pose = pose_at(dut, *posture);
-    const InverseResult back = solve_inverse(dut, pose, {"stroke", "range", "cone", "table", "triangle"});
+    const InverseResult back =
+        solve_inverse(dut, pose, {"stroke", "range", "cone", "table", "triangle"});
     ASSERT_TRUE(back.reachable) << back.limit;
-    if ((back.drives - drive_positions(dut.model, *posture)).norm() < 1e-8 * (1 + dut.model.size)) continue;
+    if ((back.drives - drive_positions(dut.model, *posture)).norm() < 1e-8 * (1 + dut.model.size))
+      continue;
     // A machine with parasitic motion (a coupler's angle, say) may take the same task
     // coordinates in two ways; then the other way must have them exactly.
     ASSERT_FALSE(dut.task.pure);
@@ -74,7 +78,8 @@ TEST_P(CatalogMachine, InverseUndoesForward) {
 }
 
 TEST_P(CatalogMachine, FastPathEqualsTheGeneralSolver) {
-  if (!dut.legs || !dut.task.pure) GTEST_SKIP() << "no closed form: the general solver is the only path";
+  if (!dut.legs || !dut.task.pure)
+    GTEST_SKIP() << "no closed form: the general solver is the only path";
   std::mt19937_64 random(12);
   for (int sample = 0; sample < 10; ++sample) {
     const auto reached = random_reached(dut, random, 0.08);
@@ -82,7 +87,8 @@ TEST_P(CatalogMachine, FastPathEqualsTheGeneralSolver) {
     const Pose pose = pose_at(dut, *reached);
     Posture posture = home(dut.model);
     const InverseResult general = solve_inverse_general(dut, pose, posture);
-    const InverseResult fast = solve_inverse(dut, pose, {"stroke", "range", "cone", "table", "triangle"});
+    const InverseResult fast =
+        solve_inverse(dut, pose, {"stroke", "range", "cone", "table", "triangle"});
     ASSERT_TRUE(general.reachable && fast.reachable);
     EXPECT_LT((general.drives - fast.drives).norm(), 1e-8 * (1 + dut.model.size));
   }
@@ -92,7 +98,8 @@ TEST_P(CatalogMachine, JacobianEqualsItsFiniteDifference) {
   std::mt19937_64 random(13);
   const Model& model = dut.model;
   std::optional<Posture> posture;
-  for (int attempt = 0; attempt < 20 && !posture; ++attempt) posture = random_reached(dut, random, 0.05);
+  for (int attempt = 0; attempt < 20 && !posture; ++attempt)
+    posture = random_reached(dut, random, 0.05);
   ASSERT_TRUE(posture);
   const auto jacobian = task_jacobian(dut, *posture);
   ASSERT_TRUE(jacobian);
@@ -109,23 +116,26 @@ TEST_P(CatalogMachine, JacobianEqualsItsFiniteDifference) {
     const Pose p = pose_at(dut, plus), m = pose_at(dut, minus);
     const Eigen::AngleAxisd turn(p.rotation * m.rotation.conjugate());
     Coordinates difference;
-    difference << p.position - m.position, turn.angle() * turn.axis() * dut.task.characteristic_length;
+    difference << p.position - m.position,
+        turn.angle() * turn.axis() * dut.task.characteristic_length;
     rates.col(d) = difference(dut.task.axes) / (2 * h);
   }
-  EXPECT_LT((*jacobian * rates - Eigen::MatrixXd::Identity(axes, axes)).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_LT((*jacobian * rates - Eigen::MatrixXd::Identity(axes, axes)).cwiseAbs().maxCoeff(),
+            1e-5);
 }
 
 TEST_P(CatalogMachine, HomeIsTheZeroOfDrivesAndPose) {
   const InverseResult inverse = solve_inverse(dut, Pose{});
   EXPECT_TRUE(inverse.reachable) << inverse.limit;
   EXPECT_LT(inverse.drives.norm(), 1e-12 * (1 + dut.model.size));
-  const auto forward =
-      solve_forward(dut, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(dut.model.drives.size())), false);
+  const auto forward = solve_forward(
+      dut, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(dut.model.drives.size())), false);
   ASSERT_EQ(forward.size(), 1u);
   EXPECT_LT(coordinates_of(forward[0].pose).norm(), 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalog, CatalogMachine, testing::ValuesIn(determinate_entries()), test_name);
+INSTANTIATE_TEST_SUITE_P(Catalog, CatalogMachine, testing::ValuesIn(determinate_entries()),
+                         test_name);
 
 // --- Delta 1 (Panov, Gustova, Mazein 2012) ---
 
@@ -143,7 +153,9 @@ class DeltaOne : public testing::Test {
                                             {b / 2 + c / 4, -(b + 2 * c) / (2 * s3) + c * s3 / 4}};
     Vector3 z;
     for (int i = 0; i < 3; ++i)
-      z[i] = centre.z() + std::sqrt(a * a - (guide.row(i) - joint.row(i) - centre.head<2>().transpose()).squaredNorm());
+      z[i] = centre.z() +
+             std::sqrt(a * a -
+                       (guide.row(i) - joint.row(i) - centre.head<2>().transpose()).squaredNorm());
     return z;
   }
 
@@ -160,8 +172,10 @@ TEST_F(DeltaOne, InverseGivesTheCarriageHeightsOfThePaper) {
   const Vector3 centre = home_centre(), at_home = carriages(centre);
   std::mt19937_64 random(3);
   for (int sample = 0; sample < 50; ++sample) {
-    const Vector3 move(uniform(random, -0.08, 0.08), uniform(random, -0.08, 0.08), uniform(random, -0.05, 0.05));
-    const InverseResult result = solve_inverse(dut, {move}, {"stroke", "triangle", "table", "cone"});
+    const Vector3 move(uniform(random, -0.08, 0.08), uniform(random, -0.08, 0.08),
+                       uniform(random, -0.05, 0.05));
+    const InverseResult result =
+        solve_inverse(dut, {move}, {"stroke", "triangle", "table", "cone"});
     ASSERT_TRUE(result.reachable) << result.limit;
     EXPECT_LT((result.drives - (carriages(centre + move) - at_home)).norm(), 1e-12);
   }
@@ -175,7 +189,8 @@ TEST_F(DeltaOne, ForwardGivesBothRootsAndTheLowerOneIsHomes) {
   ASSERT_EQ(solutions.size(), 2u);
   EXPECT_TRUE(solutions[0].home_mode);
   EXPECT_LT((solutions[0].pose.position - move).norm(), 1e-12);
-  EXPECT_LT(solutions[0].pose.position.z(), solutions[1].pose.position.z());  // "the smaller z0 is meant"
+  EXPECT_LT(solutions[0].pose.position.z(),
+            solutions[1].pose.position.z());  // "the smaller z0 is meant"
   // Equation (3) holds for the other root too.
   const Vector3 other = centre + solutions[1].pose.position;
   EXPECT_LT((2 * other.z() * Vector3::Ones() - carriages(other) - (drives + at_home)).norm(), 1e-9);
@@ -186,7 +201,8 @@ TEST_F(DeltaOne, KeepsTheChecksOfThePaper) {
   const InverseResult result = solve_inverse(dut, {Vector3(0, far, 0.02)}, {"stroke", "cone"});
   EXPECT_FALSE(result.reachable);
   EXPECT_EQ(result.limit, "triangle");
-  EXPECT_TRUE(solve_inverse(dut, {Vector3(0, far, 0.02)}, {"triangle", "stroke", "cone"}).reachable);
+  EXPECT_TRUE(
+      solve_inverse(dut, {Vector3(0, far, 0.02)}, {"triangle", "stroke", "cone"}).reachable);
 }
 
 TEST_F(DeltaOne, SaysWhichStrokeEndsAndThatItCannotTurn) {
@@ -215,14 +231,21 @@ TEST(PlanarMachine, GeneralSolverReproducesFormula4) {
   mechanism.platform = 1;
   for (int i = 0; i < 3; ++i) {
     const int carriage = static_cast<int>(mechanism.bodies.size());
-    mechanism.bodies.insert(mechanism.bodies.end(), {"carriage" + std::to_string(i), "rod" + std::to_string(i)});
+    mechanism.bodies.insert(mechanism.bodies.end(),
+                            {"carriage" + std::to_string(i), "rod" + std::to_string(i)});
     const Vector3 k(x_b[i], formula4(i, Vector3::Zero(), 0), 0);
     const Vector3 f(arm[i] * std::cos(beta[i]) + tool * std::cos(a_home),
                     arm[i] * std::sin(beta[i]) + tool * std::sin(a_home), 0);
-    Joint slide{.name = "slide", .type = JointType::prismatic, .bodies = {0, carriage}, .at = k,
-                .axes = {Vector3::UnitY(), Vector3::UnitX()}, .driven = {0}};
-    Joint top{.name = "top", .type = JointType::revolute, .bodies = {carriage, carriage + 1}, .at = k};
-    Joint bottom{.name = "bottom", .type = JointType::revolute, .bodies = {carriage + 1, 1}, .at = f};
+    Joint slide{.name = "slide",
+                .type = JointType::prismatic,
+                .bodies = {0, carriage},
+                .at = k,
+                .axes = {Vector3::UnitY(), Vector3::UnitX()},
+                .driven = {0}};
+    Joint top{
+        .name = "top", .type = JointType::revolute, .bodies = {carriage, carriage + 1}, .at = k};
+    Joint bottom{
+        .name = "bottom", .type = JointType::revolute, .bodies = {carriage + 1, 1}, .at = f};
     mechanism.joints.insert(mechanism.joints.end(), {slide, top, bottom});
   }
   const Machine dut = prepare(mechanism);
@@ -234,7 +257,8 @@ TEST(PlanarMachine, GeneralSolverReproducesFormula4) {
     const InverseResult result = solve_inverse_general(dut, pose_of(goal), posture);
     ASSERT_TRUE(result.reachable);
     for (int i = 0; i < 3; ++i)
-      EXPECT_NEAR(result.drives[i], formula4(i, goal.head<3>(), turn) - formula4(i, Vector3::Zero(), 0), 1e-10);
+      EXPECT_NEAR(result.drives[i],
+                  formula4(i, goal.head<3>(), turn) - formula4(i, Vector3::Zero(), 0), 1e-10);
   }
 }
 

@@ -13,15 +13,19 @@ namespace {
 using nlohmann::json;
 
 json good_brief() {
-  return {{"format", "polyglide/brief/1"}, {"name", "mill"},
-          {"space", "table1.json"},        {"motion", "XYZA"},
+  return {{"format", "polyglide/brief/1"},
+          {"name", "mill"},
+          {"space", "table1.json"},
+          {"motion", "XYZA"},
           {"zone", {{"size", {300, 200, 100}}, {"tilt", 20}}},
           {"objectives", {{"workspace", 1}, {"conditioning", 2}}}};
 }
 
 json good_study() {
-  return {{"format", "polyglide/study/1"}, {"name", "better"},
-          {"machine", "delta-1"},          {"turn", {"a", "b"}},
+  return {{"format", "polyglide/study/1"},
+          {"name", "better"},
+          {"machine", "delta-1"},
+          {"turn", {"a", "b"}},
           {"zone", {{"cylinder", {{"diameter", 100}, {"height", 50}}}}},
           {"objective", {{"workspace", 1}}}};
 }
@@ -48,7 +52,8 @@ std::string study_mistakes(const json& document) {
 }
 
 void expect_all(const std::string& text, std::initializer_list<const char*> parts) {
-  for (const char* part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << "\nin: " << text;
+  for (const char* part : parts)
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\nin: " << text;
 }
 
 TEST(Brief, IsReadInSiUnits) {
@@ -65,7 +70,8 @@ TEST(Brief, IsReadInSiUnits) {
 TEST(Brief, AnUnknownObjectiveNamesTheNearestWord) {
   json document = good_brief();
   document["objectives"] = {{"worksapce", 1}, {"conditioning", 1}};
-  expect_all(brief_mistakes(document), {"folder/brief.json:/objectives/worksapce", "did you mean \"workspace\"?"});
+  expect_all(brief_mistakes(document),
+             {"folder/brief.json:/objectives/worksapce", "did you mean \"workspace\"?"});
 }
 
 TEST(Brief, AMotionMustBeLettersInOrder) {
@@ -82,7 +88,8 @@ TEST(Brief, AllMistakesComeAtOnce) {
   document["objectives"] = {{"beauty", 1}};
   document["zone"] = {{"tilt", 5}};
   document["name"] = "../up";
-  expect_all(brief_mistakes(document), {"/motion", "/objectives/beauty", "either \"size\" or \"cylinder\"", "/name"});
+  expect_all(brief_mistakes(document),
+             {"/motion", "/objectives/beauty", "either \"size\" or \"cylinder\"", "/name"});
 }
 
 TEST(Brief, AZoneMustBeGivenAndATiltNeedsARotation) {
@@ -108,7 +115,8 @@ TEST(Study, ParametersOfTheMachineAreChecked) {
 
 TEST(Study, ErrorsInConstraintsAreFoundWithTheirPlace) {
   json document = good_study();
-  document["constraints"] = {{{"expression", "a + q"}, {"max", 3}}, {{"expression", "a"}, {"min", 5}, {"max", 1}}};
+  document["constraints"] = {{{"expression", "a + q"}, {"max", 3}},
+                             {{"expression", "a"}, {"min", 5}, {"max", 1}}};
   expect_all(study_mistakes(document), {"/constraints/0/expression", "/constraints/1"});
 }
 

@@ -54,7 +54,10 @@ const char* const kSpace = R"json({
 })json";
 
 json brief_document() {
-  return {{"format", "polyglide/brief/1"}, {"name", "small-mill"}, {"space", "space.json"}, {"motion", "XYZA"},
+  return {{"format", "polyglide/brief/1"},
+          {"name", "small-mill"},
+          {"space", "space.json"},
+          {"motion", "XYZA"},
           {"zone", {{"size", {120, 120, 80}}, {"tilt", 10}}},
           {"limits", {{"condition", 20}}},
           {"objectives", {{"workspace", 1}, {"conditioning", 1}, {"compactness", 1}}},

@@ -135,7 +135,9 @@ TEST(Search, ValuesThatAreNoNumbersAreWorstOfAll) {
   EXPECT_TRUE(found.usable);
   EXPECT_GE(found.best[0], 0);
 
-  problem.value = [](const std::vector<double>&) { return -std::numeric_limits<double>::infinity(); };
+  problem.value = [](const std::vector<double>&) {
+    return -std::numeric_limits<double>::infinity();
+  };
   EXPECT_FALSE(maximise(problem, {.evaluations = 50}).usable);
 }
 

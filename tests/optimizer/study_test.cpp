@@ -42,8 +42,8 @@ TEST(Tune, ConstraintsAreKeptAndTheBestIsNeverWorseThanTheStart) {
   requirements.zone.size = {0.1, 0.1, 0.05};
   requirements.objectives = {{"workspace", 1}};
   requirements.envelope = Vector3(0.74, 0.74, 0.594);
-  const TuneProblem problem{layout, task, requirements, {"a", "b", "d"},
-                            {{"keep the sum", "a + b + d", 700, 745}}};
+  const TuneProblem problem{
+      layout, task, requirements, {"a", "b", "d"}, {{"keep the sum", "a + b + d", 700, 745}}};
   for (int evaluations : {1, 20, 120}) {
     const Tuned tuned = tune(problem, evaluations, 3);
     const double sum = evaluate(problem.constraints[0], layout, tuned.best.values);
