@@ -8,7 +8,7 @@ namespace polyglide {
 
 std::optional<Eigen::MatrixXd> task_jacobian(const Machine& machine, const Posture& posture) {
   const Model& model = machine.model;
-  const Freedoms freedoms = freedoms_at(model, posture, all_freedoms(model));
+  const Freedoms freedoms = freedoms_at(model, posture);
   // Task rates per kernel rate. Rotations count as the speed they give at the
   // characteristic length, so that all rows are in m/s.
   const Eigen::Index axes = static_cast<Eigen::Index>(machine.task.axes.size());

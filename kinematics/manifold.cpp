@@ -1,14 +1,18 @@
 #include "kinematics/manifold.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace polyglide {
 namespace {
 
-constexpr double kClosed = 2e-13;      // aim
-constexpr double kAcceptable = 1e-10;  // good enough when Newton has stagnated
+constexpr double kClosed = 1e-12;      // aim; Newton's last step usually lands far below
+constexpr double kCloseEnough = 1e-7;  // when Newton has stagnated: loops of a nine-digit drawing
+                                       // with redundant constraints close no better
 constexpr int kMostIterations = 40;
+constexpr int kPatience = 3;          // iterations without progress before Newton gives up
+constexpr double kProgress = 0.7;     // part of the best residual so far that counts as progress
 constexpr double kLongestStep = 0.6;  // [rad] of the fastest joint, keeps Newton on its branch
 
 /// (J Jᵀ + λ)⁻¹ with λ far below any singular value that matters.
@@ -51,6 +55,46 @@ Demand loops_and(const Goal& goal, const Model& model, const Posture& posture) {
   return both;
 }
 
+/// The demand on the active freedoms only, and none of their motion along `pin`.
+Demand restricted(Demand demand, const std::vector<int>& active, const Eigen::VectorXd* pin) {
+  if (static_cast<Eigen::Index>(active.size()) < demand.jacobian.cols())
+    demand.jacobian = columns(demand.jacobian, active);
+  if (pin == nullptr) return demand;
+  const Eigen::Index rows = demand.residual.size();
+  demand.residual.conservativeResize(rows + 1);
+  demand.residual[rows] = 0;
+  demand.jacobian.conservativeResize(rows + 1, Eigen::NoChange);
+  demand.jacobian.row(rows) = *pin;
+  return demand;
+}
+
+/// Newton by damped normal equations; with a pin only across it.
+Projection pull_back(const Model& model, Posture& posture, const std::vector<int>& active,
+                     const Goal& goal, const Eigen::VectorXd* pin) {
+  Projection result;
+  if (model.loop_joints.empty() && !goal) return {true, 0, 0};
+  double best = std::numeric_limits<double>::infinity();
+  int idle = 0;
+  for (;; ++result.iterations) {
+    const Demand demand = restricted(loops_and(goal, model, posture), active, pin);
+    result.residual = demand.residual.cwiseAbs().maxCoeff();
+    if (result.residual < kClosed || result.iterations == kMostIterations ||
+        !(result.residual < 1e3))
+      break;
+    idle = result.residual < kProgress * best ? 0 : idle + 1;
+    best = std::min(best, result.residual);
+    if (idle >= kPatience && (pin != nullptr || best < kCloseEnough)) break;
+    Eigen::VectorXd step =
+        -demand.jacobian.transpose() * DampedInverse(demand.jacobian).solve(demand.residual);
+    const double fastest = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
+    if (!(fastest > 1e-16)) break;
+    if (fastest > kLongestStep) step *= kLongestStep / fastest;
+    move(model, posture, active, step);
+  }
+  result.closed = result.residual < kCloseEnough;
+  return result;
+}
+
 }  // namespace
 
 std::vector<int> all_freedoms(const Model& model) {
@@ -73,22 +117,7 @@ Eigen::MatrixXd columns(const Eigen::MatrixXd& matrix, const std::vector<int>& a
 
 Projection project(const Model& model, Posture& posture, const std::vector<int>& active,
                    const Goal& goal) {
-  Projection result;
-  if (model.loop_joints.empty() && !goal) return {true, 0, 0};
-  for (;; ++result.iterations) {
-    Demand demand = loops_and(goal, model, posture);
-    result.residual = demand.residual.cwiseAbs().maxCoeff();
-    result.closed = result.residual < kClosed;
-    if (result.closed || result.iterations == kMostIterations || !(result.residual < 1e3)) break;
-    const Eigen::MatrixXd jacobian = columns(demand.jacobian, active);
-    Eigen::VectorXd step = -jacobian.transpose() * DampedInverse(jacobian).solve(demand.residual);
-    const double fastest = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
-    if (!(fastest > 1e-16)) break;
-    if (fastest > kLongestStep) step *= kLongestStep / fastest;
-    move(model, posture, active, step);
-  }
-  result.closed = result.residual < kAcceptable;
-  return result;
+  return pull_back(model, posture, active, goal, nullptr);
 }
 
 Eigen::VectorXd tangent(const Model& model, const Posture& posture, const std::vector<int>& active,
@@ -106,13 +135,14 @@ Eigen::VectorXd tangent(const Model& model, const Posture& posture, const std::v
   return along / fastest;
 }
 
-bool step_along(const Model& model, Posture& posture, const std::vector<int>& active,
-                const Eigen::VectorXd& tangent, double length) {
+Projection step_along(const Model& model, Posture& posture, const std::vector<int>& active,
+                      const Eigen::VectorXd& tangent, double length) {
   Posture trial = posture;
   move(model, trial, active, length * tangent);
-  if (!project(model, trial, active).closed) return false;
-  posture = std::move(trial);
-  return true;
+  const Eigen::VectorXd pin = tangent.normalized();
+  const Projection projection = pull_back(model, trial, active, {}, &pin);
+  if (projection.closed) posture = std::move(trial);
+  return projection;
 }
 
 double displacement(const Model& model, const Posture& a, const Posture& b, int body) {

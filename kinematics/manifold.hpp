@@ -34,6 +34,8 @@ using Goal = std::function<Demand(const Posture& posture, const Eigen::MatrixXd&
 /// freedoms as little as possible: Newton with damped normal equations
 /// (J Jᵀ + λ) y = -r, δ = Jᵀ y, which redundant constraints do not disturb
 /// because Jᵀ annihilates whatever λ cannot resolve.
+/// Closed means to 1e-7, which is what a nine-digit drawing with redundant constraints allows;
+/// exact data closes to rounding. Gives up after 40 iterations.
 /// With a goal: onto the part of the manifold where the goal holds too.
 [[nodiscard]] Projection project(const Model& model, Posture& posture,
                                  const std::vector<int>& active, const Goal& goal = {});
@@ -45,10 +47,13 @@ using Goal = std::function<Demand(const Posture& posture, const Eigen::MatrixXd&
                                       const std::vector<int>& active,
                                       const Eigen::VectorXd& direction);
 
-/// Moves `length` along a tangent [rad, or length/size of the fastest joint] and
-/// projects back. False, posture unchanged, when the loops cannot be closed again.
-[[nodiscard]] bool step_along(const Model& model, Posture& posture, const std::vector<int>& active,
-                              const Eigen::VectorXd& tangent, double length);
+/// Moves `length` along a tangent [rad, or length/size of the fastest joint] and pulls back
+/// onto the manifold across it, so that the way made along the tangent stays made: a
+/// freedom that does not continue ends unclosed instead of back where it began.
+/// The posture is unchanged when the loops cannot be closed again.
+[[nodiscard]] Projection step_along(const Model& model, Posture& posture,
+                                    const std::vector<int>& active, const Eigen::VectorXd& tangent,
+                                    double length);
 
 /// Largest displacement between two postures, of any body or of one:
 /// rotation [rad] or translation/size.

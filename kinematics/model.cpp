@@ -136,6 +136,34 @@ std::vector<bool> choose_tree(const Mechanism& mechanism) {
   return in_tree;
 }
 
+/// Joints from the base to a body along the tree.
+std::vector<LoopStep> path_to(const Model& model, int body) {
+  std::vector<LoopStep> path;
+  while (model.parent_joint[body] >= 0) {
+    const int joint = model.parent_joint[body];
+    const auto [first, second] = model.mechanism.joints[joint].bodies;
+    path.push_back({joint, body == second ? 1 : -1});
+    body = body == second ? first : second;
+  }
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
+/// Once around: out to one body of the joint, through it, and back from the other. What
+/// both ways share is left out.
+std::vector<LoopStep> loop_of(const Model& model, int closing) {
+  const auto [first, second] = model.mechanism.joints[closing].bodies;
+  const std::vector<LoopStep> out = path_to(model, first), back = path_to(model, second);
+  std::size_t shared = 0;
+  while (shared < std::min(out.size(), back.size()) && out[shared].joint == back[shared].joint)
+    ++shared;
+  std::vector<LoopStep> loop(out.begin() + static_cast<std::ptrdiff_t>(shared), out.end());
+  loop.push_back({closing, 1});
+  for (std::size_t i = back.size(); i > shared; --i)
+    loop.push_back({back[i - 1].joint, -back[i - 1].sign});
+  return loop;
+}
+
 /// Walks the tree outwards from the base and notes every body's path.
 void build_tree(Model& model) {
   const Mechanism& mechanism = model.mechanism;
@@ -165,8 +193,12 @@ void build_tree(Model& model) {
     if (!seen[b])
       throw std::invalid_argument(
           fmt::format("compile: body \"{}\" is not connected to the base", mechanism.bodies[b]));
+  model.platform_path = path_to(model, mechanism.platform);
   for (int j = 0; j < joints; ++j)
-    if (!in_tree[j]) model.loop_joints.push_back(j);
+    if (!in_tree[j]) {
+      model.loop_joints.push_back(j);
+      model.loops.push_back(loop_of(model, j));
+    }
 }
 
 /// The centre and spread of the joint points. A prismatic joint's point is only
@@ -288,25 +320,20 @@ Eigen::MatrixXd scaled_screws(const Model& model, const Eigen::MatrixXd& screws)
   return scaled;
 }
 
-Eigen::MatrixXd loop_block(const Model& model, const Eigen::MatrixXd& scaled, int loop) {
-  const int closing = model.loop_joints[loop];
-  const auto [first_body, second_body] = model.mechanism.joints[closing].bodies;
-  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(6, scaled.cols());
-  for (int j = 0; j < static_cast<int>(model.mechanism.joints.size()); ++j) {
-    // Around the loop: base → bodies[0], the closing joint, bodies[1] → base.
-    const int sign = j == closing ? 1 : model.path(first_body, j) - model.path(second_body, j);
-    const int first = model.first_freedom[j], count = freedoms(model.mechanism.joints[j].type);
-    if (sign != 0) block.middleCols(first, count) = sign * scaled.middleCols(first, count);
-  }
-  return block;
-}
-
 Eigen::MatrixXd closure_jacobian(const Model& model, const Eigen::MatrixXd& screws) {
   const Eigen::MatrixXd scaled = scaled_screws(model, screws);
-  const int loops = static_cast<int>(model.loop_joints.size());
-  Eigen::MatrixXd jacobian(6 * loops, scaled.cols());
-  for (int loop = 0; loop < loops; ++loop)
-    jacobian.middleRows(6 * loop, 6) = loop_block(model, scaled, loop);
+  Eigen::MatrixXd jacobian =
+      Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(model.loops.size()), scaled.cols());
+  Eigen::Index row = 0;
+  for (const auto& loop : model.loops) {
+    for (const auto [joint, sign] : loop) {
+      const int first = model.first_freedom[joint];
+      const int count = freedoms(model.mechanism.joints[joint].type);
+      for (int f = first; f < first + count; ++f)
+        jacobian.block<6, 1>(row, f) = sign * scaled.col(f);
+    }
+    row += 6;
+  }
   return jacobian;
 }
 

@@ -19,6 +19,12 @@ struct Freedom {
   bool translational = false;  ///< pure translation: coordinate in metres
 };
 
+/// One joint on the way around a loop.
+struct LoopStep {
+  int joint = 0;
+  int sign = 1;  ///< +1: passed from bodies[0] to bodies[1], -1: the other way
+};
+
 /// A mechanism prepared for computing: tree, loops, freedoms. Immutable after
 /// compile(); share it between threads. Posture data live in Posture.
 struct Model {
@@ -31,7 +37,9 @@ struct Model {
   std::vector<int> parent_joint;     ///< per body: tree joint towards the base, -1 for the base
   std::vector<int> body_order;       ///< bodies from the base outwards
   Eigen::MatrixXi path;  ///< bodies × joints: +1/-1 when the joint lies on the body's tree path
-  std::vector<int> loop_joints;  ///< joints not in the tree: one loop each
+  std::vector<LoopStep> platform_path;  ///< joints from the base to the platform along the tree
+  std::vector<int> loop_joints;         ///< joints not in the tree: one loop each
+  std::vector<std::vector<LoopStep>> loops;  ///< per loop joint: the joints met once around
 };
 
 /// Where everything is: joint coordinates from home, and the displacement of
@@ -64,10 +72,6 @@ void advance(const Model& model, Posture& posture, const Eigen::VectorXd& increm
 /// The screws [w; v/size] at the centre, translations per `size`: what loop
 /// closure is measured in.
 [[nodiscard]] Eigen::MatrixXd scaled_screws(const Model& model, const Eigen::MatrixXd& screws);
-
-/// Rows of the loop-closure Jacobian that belong to one loop, 6×F.
-[[nodiscard]] Eigen::MatrixXd loop_block(const Model& model, const Eigen::MatrixXd& scaled,
-                                         int loop);
 
 /// Loop-closure Jacobian, 6L×F, scaled: rows [w; v/size] taken at the centre,
 /// columns of translations per `size`. Kernel = instantaneous mobility.

@@ -19,85 +19,104 @@ std::vector<int> independent_rows(const Eigen::MatrixXd& matrix, int count) {
   return rows;
 }
 
-std::string vector_text(const Vector3& v, double scale) {
-  const auto tidy = [](double value) { return std::abs(value) < 5e-4 ? 0.0 : value; };
-  return fmt::format("({:.3g}, {:.3g}, {:.3g})", tidy(v.x() * scale), tidy(v.y() * scale),
-                     tidy(v.z() * scale));
-}
-
-/// The active freedoms that belong to joints closing a loop, loop by loop, and the
-/// positions of all others in `active`.
+/// Which freedoms belong to joints closing a loop, loop by loop, and which do not.
 struct Split {
-  std::vector<std::vector<int>> closing;  ///< per loop: positions in `active`
-  std::vector<int> tree;                  ///< positions in `active`
+  std::vector<std::vector<int>> closing;  ///< per loop
+  std::vector<int> tree;
 };
 
-Split split_freedoms(const Model& model, const std::vector<int>& active) {
+Split split_freedoms(const Model& model) {
   Split split;
   split.closing.resize(model.loop_joints.size());
-  for (int i = 0; i < static_cast<int>(active.size()); ++i) {
-    const int joint = model.freedoms[active[i]].joint;
-    const auto loop = std::find(model.loop_joints.begin(), model.loop_joints.end(), joint);
-    if (loop == model.loop_joints.end())
-      split.tree.push_back(i);
-    else
-      split.closing[loop - model.loop_joints.begin()].push_back(i);
+  for (int f = 0; f < static_cast<int>(model.freedoms.size()); ++f) {
+    const auto loop = std::ranges::find(model.loop_joints, model.freedoms[f].joint);
+    (loop == model.loop_joints.end() ? split.tree : split.closing[loop - model.loop_joints.begin()])
+        .push_back(f);
   }
   return split;
 }
 
 }  // namespace
 
-Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& screws,
-                      const std::vector<int>& active) {
-  const Split split = split_freedoms(model, active);
-  const Eigen::MatrixXd scaled = scaled_screws(model, screws);
-  const int loops = static_cast<int>(model.loop_joints.size());
+Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& jacobian) {
+  const Split split = split_freedoms(model);
+  const auto loops = static_cast<int>(model.loops.size());
   Eigen::MatrixXd reduced(6 * loops, split.tree.size());
   std::vector<Eigen::MatrixXd> rates(
       loops);  // of the closing joint per rate of the tree's freedoms
   Eigen::Index rows = 0;
   for (int loop = 0; loop < loops; ++loop) {
-    const Eigen::MatrixXd block = loop_block(model, scaled, loop)(Eigen::all, active);
-    const Eigen::MatrixXd tree = block(Eigen::all, split.tree);
-    const Eigen::MatrixXd own = block(Eigen::all, split.closing[loop]);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(own);
-    const Eigen::MatrixXd turned = qr.householderQ().transpose() * tree;
-    reduced.middleRows(rows, 6 - own.cols()) = turned.bottomRows(6 - own.cols());
+    Eigen::Matrix<double, 6, Eigen::Dynamic> tree(6, split.tree.size());
+    for (std::size_t i = 0; i < split.tree.size(); ++i)
+      tree.col(static_cast<Eigen::Index>(i)) = jacobian.block<6, 1>(6 * loop, split.tree[i]);
+    using Own = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 3>;
+    Own own(6, split.closing[loop].size());
+    for (Eigen::Index i = 0; i < own.cols(); ++i)
+      own.col(i) = jacobian.block<6, 1>(6 * loop, split.closing[loop][i]);
+    if (own.cols() == 0) {  // closed by a weld
+      reduced.middleRows<6>(rows) = tree;
+      rates[loop].resize(0, tree.cols());
+      rows += 6;
+      continue;
+    }
+    const Eigen::HouseholderQR<Own> qr(own);
+    tree.applyOnTheLeft(qr.householderQ().transpose());
+    reduced.middleRows(rows, 6 - own.cols()) = tree.bottomRows(6 - own.cols());
     rows += 6 - own.cols();
     rates[loop] = -qr.matrixQR()
                        .topRows(own.cols())
                        .triangularView<Eigen::Upper>()
-                       .solve(turned.topRows(own.cols()));
+                       .solve(tree.topRows(own.cols()));
   }
   const Kernel tree = kernel_of(reduced.topRows(rows));
-  Kernel kernel{tree.decision, Eigen::MatrixXd(active.size(), tree.basis.cols())};
+  Kernel kernel{tree.decision, Eigen::MatrixXd(jacobian.cols(), tree.basis.cols())};
   kernel.basis(split.tree, Eigen::all) = tree.basis;
   for (int loop = 0; loop < loops; ++loop)
     kernel.basis(split.closing[loop], Eigen::all) = rates[loop] * tree.basis;
   return kernel;
 }
 
-Freedoms freedoms_at(const Model& model, const Posture& posture, const std::vector<int>& active) {
-  Freedoms result;
+Eigen::MatrixXd platform_motion(const Model& model, const Posture& posture,
+                                const Eigen::MatrixXd& rates) {
   const Eigen::MatrixXd screws = freedom_screws(model, posture);
-  Kernel kernel = closure_kernel(model, screws, active);
+  const int platform = model.mechanism.platform;
+  const Vector3 tool = posture.bodies[platform] * model.mechanism.tool;
+  Eigen::MatrixXd twists = Eigen::MatrixXd::Zero(6, rates.cols());
+  for (const auto [joint, sign] : model.platform_path) {
+    const int first = model.first_freedom[joint];
+    for (int f = first; f < first + freedoms(model.mechanism.joints[joint].type); ++f) {
+      const Vector3 w = screws.col(f).head<3>(), v = screws.col(f).tail<3>();
+      Screw at_tool;
+      at_tool << w, (v + w.cross(tool)) / model.size;
+      twists.noalias() +=
+          sign * (model.freedoms[f].translational ? model.size : 1) * at_tool * rates.row(f);
+    }
+  }
+  return twists;
+}
+
+Freedoms freedoms_at(const Model& model, const Posture& posture) {
+  Freedoms result;
+  Kernel kernel = closure_kernel(model, closure_jacobian(model, posture));
   result.rank = kernel.decision;
   result.kernel = std::move(kernel.basis);
   result.mobility = static_cast<int>(result.kernel.cols());
-
-  const Eigen::VectorXd scale = freedom_scale(model);
-  Eigen::MatrixXd twists =
-      columns(body_jacobian(model, screws, model.mechanism.platform) * scale.asDiagonal(), active);
-  const Vector3 tool = posture.bodies[model.mechanism.platform] * model.mechanism.tool;
-  for (Eigen::Index c = 0; c < twists.cols(); ++c) {
-    const Vector3 w = twists.col(c).head<3>();
-    twists.col(c).tail<3>() = (twists.col(c).tail<3>() + w.cross(tool)) / model.size;
-  }
-  result.platform = twists * result.kernel;
+  result.platform = platform_motion(model, posture, result.kernel);
   // Kernel columns are orthonormal: a platform rate of 1 is real, 1e-15 is not.
   result.platform_rank = rank_of(result.platform, 1);
   return result;
+}
+
+Freedoms hold_drives(const Model& model, const Freedoms& free) {
+  Freedoms held;
+  Kernel kernel = kernel_of(free.kernel(model.drives, Eigen::all), 1);
+  held.rank = kernel.decision;
+  held.kernel = free.kernel * kernel.basis;
+  held.kernel(model.drives, Eigen::all).setZero();
+  held.mobility = static_cast<int>(held.kernel.cols());
+  held.platform = free.platform * kernel.basis;
+  held.platform_rank = rank_of(held.platform, 1);
+  return held;
 }
 
 TaskSpace task_axes(const Freedoms& freedoms) {
@@ -144,19 +163,6 @@ std::string axes_name(const std::vector<int>& axes) {
   std::string name;
   for (int axis : axes) name += "XYZABC"[axis];
   return name;
-}
-
-std::string describe_twist(const Screw& twist) {
-  const Vector3 w = twist.head<3>(), v = twist.tail<3>();
-  const double turning = w.norm();
-  if (turning < 1e-9 * (1 + v.norm())) return "translation along " + vector_text(v.normalized(), 1);
-  const Vector3 axis = w / turning;
-  const Vector3 point = w.cross(v) / (turning * turning);
-  const double pitch = axis.dot(v) / turning;
-  const std::string where =
-      fmt::format("the axis along {} through {} mm", vector_text(axis, 1), vector_text(point, 1e3));
-  if (std::abs(pitch) < 1e-6 * (1 + point.norm())) return "rotation about " + where;
-  return fmt::format("screw motion of pitch {:.3g} mm/rad about {}", pitch * 1e3, where);
 }
 
 }  // namespace polyglide

@@ -5,25 +5,31 @@
 
 namespace polyglide {
 
-/// Kernel of loop closure with only `active` freedoms moving: rows in their order.
+/// Kernel of the loop-closure Jacobian, one row per freedom (scaled rates).
 /// The freedoms of the closing joints are eliminated first (each loop is projected
 /// on what its closing joint cannot do), which leaves the kernel as it is and the
 /// matrix a third as large. Columns are orthonormal in the other freedoms.
-[[nodiscard]] Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& screws,
-                                    const std::vector<int>& active);
+[[nodiscard]] Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& jacobian);
 
 /// Instantaneous freedoms of a mechanism at one posture.
 struct Freedoms {
-  RankDecision rank;         ///< of the loop-closure Jacobian
-  Eigen::MatrixXd kernel;    ///< active freedoms × mobility, scaled rates
+  RankDecision rank;         ///< of the loop-closure Jacobian, or of the drives' rates when held
+  Eigen::MatrixXd kernel;    ///< freedoms × mobility, scaled rates
   Eigen::MatrixXd platform;  ///< 6×mobility: platform twist per kernel column, [w; v of tool/size]
   int mobility = 0;
   RankDecision platform_rank;  ///< of `platform`
 };
 
-/// Freedoms with only `active` joint freedoms moving.
-[[nodiscard]] Freedoms freedoms_at(const Model& model, const Posture& posture,
-                                   const std::vector<int>& active);
+/// Platform twist per column of scaled joint rates, 6×columns: [w; v of the tool point / size].
+[[nodiscard]] Eigen::MatrixXd platform_motion(const Model& model, const Posture& posture,
+                                              const Eigen::MatrixXd& rates);
+
+/// Freedoms with nothing held.
+[[nodiscard]] Freedoms freedoms_at(const Model& model, const Posture& posture);
+
+/// What is left of them with all drives held: the part of the kernel in which no drive
+/// moves. Costs one small decomposition instead of another large one.
+[[nodiscard]] Freedoms hold_drives(const Model& model, const Freedoms& free);
 
 /// Which task coordinates are independent, from platform twists at a posture:
 /// rotations by the rank of the angular part, letters by pivoting.
@@ -39,9 +45,5 @@ struct Freedoms {
 
 /// "XYZA"
 [[nodiscard]] std::string axes_name(const std::vector<int>& axes);
-
-/// A twist in words: "rotation about the axis through (x, y, z) mm along (…)",
-/// "translation along (…)", "screw motion …".
-[[nodiscard]] std::string describe_twist(const Screw& twist);
 
 }  // namespace polyglide

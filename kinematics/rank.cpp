@@ -8,8 +8,11 @@
 namespace polyglide {
 namespace {
 
-constexpr double kNoise = 1e-12;     // below this part of the largest value: rounding
-constexpr double kNeverDrop = 1e-4;  // above this part of the largest value: real
+// Parts of the largest value. Nine-digit coordinates leave values up to about 1e-8 where the exact
+// machine has zeros; the smallest real ones met lie a few 1e-6 (axes 1° off). Below kNoise
+// all is rounding, above kReal a value is not more real for being larger.
+constexpr double kNoise = 1e-9, kReal = 1e-5;
+constexpr double kNeverDrop = 1e-4;  // whatever lies below it
 constexpr double kLargestGap = 1e16;
 
 }  // namespace
@@ -25,15 +28,18 @@ RankDecision decide_rank(const Eigen::VectorXd& s, double reference) {
   // kept(r) is the last value kept when the rank is r; rank 0 keeps the reference.
   const auto kept = [&](int r) { return r > 0 ? s[r - 1] / top : 1; };
   const auto dropped = [&](int r) { return r < count ? s[r] / top : 0; };
-  double best = 0;
+  double best = 0, best_raw = 0;
   for (int r = reference > 0 ? 0 : 1; r <= count; ++r) {
     if (dropped(r) > kNeverDrop) continue;
-    const double ratio = std::max(kept(r), kNoise) / std::max(dropped(r), kNoise);
-    if (ratio > best) {
+    const double ratio = std::min(kept(r), kReal) / std::max(dropped(r), kNoise);
+    const double raw = kept(r) / std::max(dropped(r), kNoise);
+    if (ratio > best * (1 + 1e-9) || (ratio > best * (1 - 1e-9) && raw > best_raw)) {
       best = ratio;
+      best_raw = raw;
       decision.rank = r;
     }
   }
+  decision.noise = dropped(decision.rank);
   decision.smallest = kept(decision.rank) * top;
   // When nothing is dropped the doubt is how far the smallest is from rounding.
   decision.gap = kept(decision.rank) / std::max(dropped(decision.rank), 1 / kLargestGap);
@@ -66,7 +72,7 @@ Eigen::VectorXd singular_values(Eigen::MatrixXd matrix, Eigen::MatrixXd* v) {
 
 }  // namespace
 
-Kernel kernel_of(const Eigen::MatrixXd& matrix) {
+Kernel kernel_of(const Eigen::MatrixXd& matrix, double reference) {
   Kernel kernel;
   if (matrix.rows() == 0 || matrix.cols() == 0) {
     kernel.decision.gap = kLargestGap;
@@ -74,7 +80,7 @@ Kernel kernel_of(const Eigen::MatrixXd& matrix) {
     return kernel;
   }
   Eigen::MatrixXd v;
-  kernel.decision = decide_rank(singular_values(matrix, &v));
+  kernel.decision = decide_rank(singular_values(matrix, &v), reference);
   kernel.basis = v.rightCols(matrix.cols() - kernel.decision.rank);
   return kernel;
 }

@@ -10,13 +10,16 @@ struct RankDecision {
   double gap = 0;       ///< smallest kept / largest dropped singular value, at most 1e16
   double smallest = 0;  ///< smallest kept singular value
   double largest = 0;   ///< largest singular value, 0 for an empty or zero matrix
+  double noise = 0;     ///< largest dropped singular value, as part of the largest
 };
 
 /// Decides a rank from singular values in descending order.
 ///
-/// Fixed thresholds fail at drawing precision; the largest ratio of neighbours
-/// does not. Values below 1e-12 of the largest are rounding noise and count as
-/// equal; a value above 1e-4 of the largest is never dropped.
+/// Fixed thresholds fail at drawing precision; the ratio of neighbours does not. Ratios are
+/// compared after values above 1e-5 of the largest have been taken as equally real and
+/// values below 1e-9 as equally noise, so that a small real value (5e-6) is not taken for noise
+/// because it stands further below the others than above the noise of a nine-digit
+/// drawing. A value above 1e-4 of the largest is never dropped.
 /// An empty or zero matrix has rank 0.
 /// @param reference a value known to be real, in the same scale (0 = none): with
 ///        it everything can be dropped, so noise beside it has rank 0.
@@ -31,8 +34,9 @@ struct Kernel {
 
 /// Kernel by LAPACK's singular value decomposition.
 /// A matrix without rows has the identity as kernel and the largest gap, 1e16.
+/// @param reference as for decide_rank().
 /// @throws std::invalid_argument when an entry is not finite.
-[[nodiscard]] Kernel kernel_of(const Eigen::MatrixXd& matrix);
+[[nodiscard]] Kernel kernel_of(const Eigen::MatrixXd& matrix, double reference = 0);
 
 /// Singular values only.
 [[nodiscard]] RankDecision rank_of(const Eigen::MatrixXd& matrix, double reference = 0);

@@ -128,10 +128,7 @@ std::string record_of(const Candidate& candidate) {
 Json check_of(const Space& space, const Candidate& candidate, std::uint64_t seed) {
   Mechanism mechanism = build(space, candidate.raw_index);
   mechanism.name = candidate.id;
-  MobilityOptions options;
-  options.seed = seed;
-  options.evidence = false;
-  return to_json(analyse_mobility(compile(mechanism), options), mechanism);
+  return to_json(analyse_mobility(compile(mechanism), screening_options(seed)), mechanism);
 }
 
 void check_all(const Space& space, const EnumerationOptions& options, Workers& workers,

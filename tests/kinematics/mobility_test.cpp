@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <random>
-
 #include "catalog/catalog.hpp"
 #include "catalog/json_file.hpp"
 
@@ -90,83 +87,6 @@ TEST(TableOne, OneChangedJointChangesTheVerdict) {
       check(with_end("table1-2", 0, "platform", {{"joint", "universal"}, {"axis", "x"}})).verdict,
       Verdict::singular_home);
 }
-
-// --- Laws for every catalog entry ---
-
-Mechanism moved(Mechanism mechanism, const Eigen::Isometry3d& motion, double scale) {
-  const auto point = [&](Vector3& p) { p = motion * (scale * p); };
-  const auto direction = [&](Vector3& d) { d = motion.linear() * d; };
-  point(mechanism.tool);
-  for (Joint& joint : mechanism.joints) {
-    point(joint.at);
-    for (Vector3& axis : joint.axes) direction(axis);
-    joint.pitch *= scale;
-  }
-  return mechanism;
-}
-
-/// The same mechanism with joints and bodies in another order and every joint's
-/// two bodies swapped (a universal's axes with them).
-Mechanism renumbered(const Mechanism& mechanism, std::mt19937_64& random) {
-  Mechanism other = mechanism;
-  std::shuffle(other.joints.begin(), other.joints.end(), random);
-  std::vector<int> place(mechanism.bodies.size());
-  std::iota(place.begin(), place.end(), 0);
-  std::shuffle(place.begin(), place.end(), random);
-  for (std::size_t i = 0; i < place.size(); ++i) other.bodies[place[i]] = mechanism.bodies[i];
-  other.base = place[mechanism.base];
-  other.platform = place[mechanism.platform];
-  for (Joint& joint : other.joints) {
-    joint.bodies = {place[joint.bodies[1]], place[joint.bodies[0]]};
-    if (joint.type == JointType::universal) std::swap(joint.axes[0], joint.axes[1]);
-  }
-  return other;
-}
-
-void expect_same_verdict(const MobilityReport& a, const MobilityReport& b) {
-  EXPECT_EQ(a.verdict, b.verdict);
-  EXPECT_EQ(a.home, b.home);
-  EXPECT_EQ(a.finite, b.finite);
-  EXPECT_EQ(a.redundant_constraints, b.redundant_constraints);
-  EXPECT_EQ(a.pattern, b.pattern);
-  EXPECT_EQ(a.locked_platform, b.locked_platform);
-  EXPECT_EQ(a.home_locked_platform, b.home_locked_platform);
-  EXPECT_EQ(a.surplus, b.surplus);
-}
-
-class CatalogVerdict : public testing::TestWithParam<std::string> {};
-
-TEST_P(CatalogVerdict, DoesNotDependOnUnitFrameOrOrder) {
-  const Mechanism mechanism = expand(find_layout(GetParam()));
-  const MobilityReport reference = check(mechanism);
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> normal;
-  for (double scale : {1e-3, 1.0, 1e3}) {
-    SCOPED_TRACE(testing::Message() << "scale " << scale);
-    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-    motion.linear() =
-        Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
-            .normalized()
-            .toRotationMatrix();
-    motion.translation() = scale * Vector3(normal(random), normal(random), normal(random));
-    expect_same_verdict(reference, check(moved(renumbered(mechanism, random), motion, scale)));
-  }
-}
-
-TEST_P(CatalogVerdict, DoesNotDependOnTheSeed) {
-  const Model model = compile(expand(find_layout(GetParam())));
-  const MobilityReport reference = analyse_mobility(model);
-  for (std::uint64_t seed = 2; seed < 5; ++seed)
-    expect_same_verdict(reference, analyse_mobility(model, {.seed = seed}));
-}
-
-std::string test_name(const testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Catalog, CatalogVerdict, testing::ValuesIn(catalog_names()), test_name);
 
 // --- Limits ---
 

@@ -1,0 +1,116 @@
+#include "kinematics/mobility.hpp"
+#include "kinematics/screw_words.hpp"
+
+namespace polyglide {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json numbers(const Screw& screw) { return std::vector<double>(screw.begin(), screw.end()); }
+
+Json wrenches_json(const std::vector<Screw>& wrenches) {
+  Json list = Json::array();
+  for (const Screw& wrench : wrenches)
+    list.push_back({{"about", describe_wrench(wrench)}, {"wrench", numbers(wrench)}});
+  return list;
+}
+
+Json modes_json(const MobilityReport& report, const Mechanism& mechanism) {
+  Json list = Json::array();
+  for (const FreedomMode& mode : report.modes) {
+    Json bodies = Json::array();
+    for (const BodyMotion& motion : mode.bodies)
+      bodies.push_back({{"name", mechanism.bodies[motion.body]},
+                        {"speed", motion.speed},
+                        {"twist", numbers(motion.twist)}});
+    list.push_back(
+        {{"about", mode.about}, {"twist", numbers(mode.twist)}, {"bodies", std::move(bodies)}});
+  }
+  return list;
+}
+
+Json limbs_json(const MobilityReport& report) {
+  Json list = Json::array();
+  for (const LimbWrenches& limb : report.limbs)
+    list.push_back({{"name", limb.name},
+                    {"joints", limb.joints},
+                    {"connectivity", limb.connectivity},
+                    {"constraints", wrenches_json(limb.constraints)},
+                    {"actuations", wrenches_json(limb.actuations)}});
+  return list;
+}
+
+Json redundant_json(const MobilityReport& report) {
+  Json list = Json::array();
+  for (const RedundantConstraint& constraint : report.redundant) {
+    Json loops = Json::array();
+    for (const auto& loop : constraint.loops)
+      loops.push_back({{"closed_by", loop.closed_by}, {"wrench", numbers(loop.wrench)}});
+    list.push_back({{"about", constraint.about}, {"loops", std::move(loops)}});
+  }
+  return list;
+}
+
+void add_evidence(Json& json, const MobilityReport& report, const Mechanism& mechanism) {
+  json["parasitic"] = Json::array();
+  for (const ParasiticMotion& motion : report.parasitic)
+    json["parasitic"].push_back(
+        {{"axis", std::string(1, "XYZABC"[motion.axis])}, {"amount", motion.amount}});
+  json["modes"] = modes_json(report, mechanism);
+  json["platform_motions"] = Json::array();
+  for (const PlatformMotion& motion : report.platform_motions)
+    json["platform_motions"].push_back({{"about", motion.about}, {"twist", numbers(motion.twist)}});
+  json["idle_rods"] = report.idle_rods;
+  json["idle_freedoms"] = Json::array();
+  for (const IdleFreedom& idle : report.idle_freedoms)
+    json["idle_freedoms"].push_back(
+        {{"about", idle.about}, {"bodies", idle.bodies}, {"twist", numbers(idle.twist)}});
+  json["redundant"] = redundant_json(report);
+  json["limbs"] = limbs_json(report);
+  const CountingTerms& terms = report.counting;
+  json["counting"] = {{"d", terms.order},
+                      {"n", terms.links},
+                      {"g", terms.joints},
+                      {"f", terms.freedoms},
+                      {"virtual_constraints", terms.virtual_constraints},
+                      {"local_freedoms", terms.local},
+                      {"mobility", terms.mobility}};
+}
+
+}  // namespace
+
+Json to_json(const MobilityReport& report, const Mechanism& mechanism) {
+  Json json;
+  json["name"] = mechanism.name;
+  json["verdict"] = to_string(report.verdict);
+  json["reasons"] = report.reasons;
+  json["mobility"] = {{"home", report.home},
+                      {"finite", report.finite},
+                      {"kutzbach", report.kutzbach},
+                      {"redundant_constraints", report.redundant_constraints},
+                      {"idle", report.idle}};
+  json["platform"] = {
+      {"dof", report.platform_dof},           {"translations", report.task.translations},
+      {"rotations", report.task.rotations},   {"pattern", report.pattern},
+      {"home_dof", report.platform_home_dof}, {"axes", report.axes}};
+  json["drives"] = {{"count", report.drives},
+                    {"locked_mobility", report.locked_mobility},
+                    {"locked_platform", report.locked_platform},
+                    {"home_locked_platform", report.home_locked_platform},
+                    {"surplus", report.surplus}};
+  json["rank_gap"] = report.rank_gap;
+  json["margin"] = report.margin;
+  json["closure"] = {{"residual", report.residual}, {"noise", report.noise}};
+  json["second_order_conditions"] = report.obstructions;
+  json["rotation_axis"] = report.task.rotation_axis.isZero()
+                              ? Json()
+                              : Json({report.task.rotation_axis.x(), report.task.rotation_axis.y(),
+                                      report.task.rotation_axis.z()});
+  json["branches"] = Json::array();
+  for (const auto& branch : report.branches)
+    json["branches"].push_back({{"dimension", branch.dimension}, {"pattern", branch.pattern}});
+  if (!report.limbs.empty()) add_evidence(json, report, mechanism);
+  return json;
+}
+
+}  // namespace polyglide

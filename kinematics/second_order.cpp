@@ -1,0 +1,123 @@
+#include "kinematics/second_order.hpp"
+
+#include "kinematics/manifold.hpp"
+#include "kinematics/rank.hpp"
+
+namespace polyglide {
+namespace {
+
+constexpr int kStarts = 12;
+constexpr int kIterations = 40;
+constexpr double kSatisfied = 1e-8;  // of a form whose coefficients are about 1
+constexpr double kDamping = 1e-12;
+
+/// Lie bracket of two twists [w; v].
+Screw bracket(const Screw& a, const Screw& b) {
+  Screw result;
+  const Vector3 wa = a.head<3>(), wb = b.head<3>();
+  result.head<3>() = wa.cross(wb);
+  result.tail<3>() = wa.cross(Vector3(b.tail<3>())) + Vector3(a.tail<3>()).cross(wb);
+  return result;
+}
+
+/// Σ_{i<j} [S_i, S_j] q̇_i q̇_j of every loop, stacked.
+Eigen::VectorXd bracket_sums(const Model& model, const Eigen::MatrixXd& scaled,
+                             const Eigen::VectorXd& rates) {
+  Eigen::VectorXd sums(6 * static_cast<Eigen::Index>(model.loops.size()));
+  Eigen::Index row = 0;
+  for (const auto& loop : model.loops) {
+    Screw passed = Screw::Zero(), sum = Screw::Zero();
+    for (const auto [joint, sign] : loop) {
+      const int first = model.first_freedom[joint];
+      const int count = freedoms(model.mechanism.joints[joint].type);
+      for (int i = 0; i < count; ++i) {
+        const int f = sign > 0 ? first + i : first + count - 1 - i;
+        const Screw step = sign * rates[f] * scaled.col(f);
+        sum += bracket(passed, step);
+        passed += step;
+      }
+    }
+    sums.segment<6>(row) = sum;
+    row += 6;
+  }
+  return sums;
+}
+
+/// The quadratic forms as symmetric matrices over the kernel's coordinates, made independent.
+std::vector<Eigen::MatrixXd> quadratic_forms(const Model& model, const Posture& posture,
+                                             const Eigen::MatrixXd& kernel,
+                                             const std::vector<int>& active) {
+  const Eigen::MatrixXd scaled = scaled_screws(model, freedom_screws(model, posture));
+  const Eigen::MatrixXd jacobian = columns(closure_jacobian(model, posture), active);
+  const Eigen::MatrixXd unresisted = kernel_of(jacobian.transpose()).basis;
+  const Eigen::Index k = kernel.cols(), pairs = k * (k + 1) / 2;
+  Eigen::MatrixXd squares(unresisted.cols(), k), forms(unresisted.cols(), pairs);
+  for (Eigen::Index p = 0; p < k; ++p)
+    squares.col(p) = unresisted.transpose() * bracket_sums(model, scaled, kernel.col(p));
+  for (Eigen::Index p = 0, pair = 0; p < k; ++p)
+    for (Eigen::Index q = p; q < k; ++q, ++pair) {
+      if (p == q) {
+        forms.col(pair) = squares.col(p);
+        continue;
+      }
+      const Eigen::VectorXd both =
+          unresisted.transpose() * bracket_sums(model, scaled, kernel.col(p) + kernel.col(q));
+      forms.col(pair) = (both - squares.col(p) - squares.col(q)) / 2;
+    }
+  if (forms.size() == 0) return {};
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(forms, Eigen::ComputeThinV);
+  const int rank = decide_rank(svd.singularValues(), 1).rank;
+  std::vector<Eigen::MatrixXd> matrices;
+  for (int i = 0; i < rank; ++i) {
+    Eigen::MatrixXd matrix(k, k);
+    for (Eigen::Index p = 0, pair = 0; p < k; ++p)
+      for (Eigen::Index q = p; q < k; ++q, ++pair)
+        matrix(p, q) = matrix(q, p) = svd.matrixV()(pair, i);
+    matrices.push_back(std::move(matrix));
+  }
+  return matrices;
+}
+
+/// A common zero of the forms on the unit sphere near `start`; false when none is reached.
+bool solve(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd& start) {
+  const auto m = static_cast<Eigen::Index>(forms.size());
+  Eigen::VectorXd values(m);
+  Eigen::MatrixXd slopes(m, start.size());
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    start.normalize();
+    for (Eigen::Index i = 0; i < m; ++i) {
+      slopes.row(i) = 2 * (forms[i] * start).transpose();
+      values[i] = slopes.row(i).dot(start) / 2;
+    }
+    if (values.cwiseAbs().maxCoeff() < kSatisfied) return true;
+    Eigen::MatrixXd gram = slopes * slopes.transpose();
+    gram.diagonal().array() += kDamping;
+    start -= slopes.transpose() * gram.llt().solve(values);
+    if (!(start.norm() > 1e-6)) return false;
+  }
+  return false;
+}
+
+}  // namespace
+
+Eigen::VectorXd random_direction(std::mt19937_64& random, Eigen::Index size) {
+  Eigen::VectorXd direction(size);
+  for (double& value : direction) value = 2 * static_cast<double>(random() >> 11) * 0x1p-53 - 1;
+  return direction;
+}
+
+SecondOrder second_order(const Model& model, const Posture& posture, const Eigen::MatrixXd& kernel,
+                         const std::vector<int>& active, std::mt19937_64& random) {
+  SecondOrder result;
+  if (kernel.cols() == 0) return result;
+  const auto forms = quadratic_forms(model, posture, kernel, active);
+  result.obstructions = static_cast<int>(forms.size());
+  for (int i = 0; i < kStarts; ++i) {
+    Eigen::VectorXd direction = random_direction(random, kernel.cols());
+    if (forms.empty() || solve(forms, direction))
+      result.directions.push_back(direction.normalized());
+  }
+  return result;
+}
+
+}  // namespace polyglide
