@@ -14,7 +14,7 @@ namespace {
 constexpr double kDoubtfulGap = 1e3;  // contract: a smaller gap is said in the reasons
 constexpr double kDrawn = 1e-11;  // closure or rank noise above it comes from rounded coordinates
 constexpr double kMoved = 0.02;   // of a step: a platform that went less far has not moved
-constexpr double kStray = 1e-6;   // [rad, or length/size] of a coordinate said to stay zero
+constexpr double kStray = 1e-5;   // [rad, or length/size] of a coordinate said to stay zero
 
 /// What was measured on one motion branch.
 struct Measured {

@@ -215,10 +215,13 @@ void measure(Model& model) {
   double square = 0;
   for (const Vector3& point : points) square += (point - model.centre).squaredNorm();
   model.size = std::sqrt(square / static_cast<double>(points.size()));
-  if (model.size > 1e-9 * (1 + model.centre.norm())) return;
-  // All joints in one point (spherical linkage): the tool gives the length.
+  // Joints that meet in one point (spherical linkages) meet there as well as the drawing holds.
+  double reach = model.mechanism.tool.norm();
+  for (const Vector3& point : points) reach = std::max(reach, point.norm());
+  constexpr double kDrawn = 1e-7;
+  if (model.size > kDrawn * reach) return;
   model.size = (model.mechanism.tool - model.centre).norm();
-  if (!(model.size > 0)) model.size = 1;
+  if (!(model.size > kDrawn * reach)) model.size = reach > 0 ? reach : 1;
 }
 
 }  // namespace

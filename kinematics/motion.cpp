@@ -9,6 +9,10 @@
 namespace polyglide {
 namespace {
 
+/// Rotation rates that drawing errors cause in a Schoenflies machine reach 1e-7; commanded
+/// ones are of the order of 1.
+constexpr RankScale kTurning{1e-8, 1e-3};
+
 /// Indices of `count` rows that are independent, chosen by pivoting, ascending.
 std::vector<int> independent_rows(const Eigen::MatrixXd& matrix, int count) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix.transpose());
@@ -125,8 +129,8 @@ TaskSpace task_axes(const Freedoms& freedoms) {
   const int dof = freedoms.platform_rank.rank;
   if (dof == 0) return task;
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(angular, Eigen::ComputeFullV);
-  task.rotations =
-      std::min(decide_rank(svd.singularValues(), freedoms.platform_rank.largest).rank, dof);
+  task.rotations = std::min(
+      decide_rank(svd.singularValues(), freedoms.platform_rank.largest, kTurning).rank, dof);
   task.translations = dof - task.rotations;
 
   Eigen::MatrixXd translating = freedoms.platform.bottomRows(3);

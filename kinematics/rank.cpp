@@ -8,16 +8,12 @@
 namespace polyglide {
 namespace {
 
-// Parts of the largest value. Nine-digit coordinates leave values up to about 1e-8 where the exact
-// machine has zeros; the smallest real ones met lie a few 1e-6 (axes 1° off). Below kNoise
-// all is rounding, above kReal a value is not more real for being larger.
-constexpr double kNoise = 1e-9, kReal = 1e-5;
 constexpr double kNeverDrop = 1e-4;  // whatever lies below it
 constexpr double kLargestGap = 1e16;
 
 }  // namespace
 
-RankDecision decide_rank(const Eigen::VectorXd& s, double reference) {
+RankDecision decide_rank(const Eigen::VectorXd& s, double reference, const RankScale& scale) {
   RankDecision decision;
   const int count = static_cast<int>(s.size());
   const double top = std::max(count > 0 ? s[0] : 0, reference);
@@ -31,8 +27,8 @@ RankDecision decide_rank(const Eigen::VectorXd& s, double reference) {
   double best = 0, best_raw = 0;
   for (int r = reference > 0 ? 0 : 1; r <= count; ++r) {
     if (dropped(r) > kNeverDrop) continue;
-    const double ratio = std::min(kept(r), kReal) / std::max(dropped(r), kNoise);
-    const double raw = kept(r) / std::max(dropped(r), kNoise);
+    const double ratio = std::min(kept(r), scale.real) / std::max(dropped(r), scale.noise);
+    const double raw = kept(r) / std::max(dropped(r), scale.noise);
     if (ratio > best * (1 + 1e-9) || (ratio > best * (1 - 1e-9) && raw > best_raw)) {
       best = ratio;
       best_raw = raw;

@@ -13,18 +13,26 @@ struct RankDecision {
   double noise = 0;     ///< largest dropped singular value, as part of the largest
 };
 
+/// Parts of the largest singular value between which a rank is decided. Nine-digit coordinates
+/// leave values up to about 1e-8 where the exact machine has zeros; the smallest real ones met in
+/// loop-closure Jacobians lie a few 1e-6 (axes 1° off).
+struct RankScale {
+  double noise = 1e-9;  ///< below it all is rounding
+  double real = 1e-5;   ///< above it a value is not more real for being larger
+};
+
 /// Decides a rank from singular values in descending order.
 ///
 /// Fixed thresholds fail at drawing precision; the ratio of neighbours does not. Ratios are
-/// compared after values above 1e-5 of the largest have been taken as equally real and
-/// values below 1e-9 as equally noise, so that a small real value (5e-6) is not taken for noise
-/// because it stands further below the others than above the noise of a nine-digit
-/// drawing. A value above 1e-4 of the largest is never dropped.
-/// An empty or zero matrix has rank 0.
+/// compared after values above `scale.real` of the largest have been taken as equally real and
+/// values below `scale.noise` as equally noise, so that a small real value (5e-6) is not taken for
+/// noise because it stands further below the others than above the noise of a nine-digit drawing. A
+/// value above 1e-4 of the largest is never dropped. An empty or zero matrix has rank 0.
 /// @param reference a value known to be real, in the same scale (0 = none): with
 ///        it everything can be dropped, so noise beside it has rank 0.
+/// @param scale what counts as noise and as real in these values
 [[nodiscard]] RankDecision decide_rank(const Eigen::VectorXd& singular_values,
-                                       double reference = 0);
+                                       double reference = 0, const RankScale& scale = {});
 
 /// Rank and kernel of a matrix.
 struct Kernel {
