@@ -40,6 +40,7 @@ class Explorer {
         active_(held ? passive_freedoms(model) : all_freedoms(model)) {}
 
   Departure leave(const Eigen::MatrixXd& kernel);
+  void go_on(Posture& posture, Eigen::MatrixXd kernel);
 
  private:
   /// A step along scaled rates of all freedoms. How far the manifold was left of the
@@ -49,6 +50,8 @@ class Explorer {
   bool leave_smoothly(const Eigen::MatrixXd& kernel);
   void leave_by_second_order(const Eigen::MatrixXd& kernel);
   void meet(Posture near);
+  double wander(Posture& posture, const Eigen::MatrixXd& kernel, double length);
+  bool is_shaky(Branch& branch, const Posture& near);
   void walk_far(Branch& branch, const Posture& near);
 
   const Model& model_;
@@ -89,32 +92,39 @@ void find_span(Branch& branch, const std::vector<Eigen::VectorXd>& directions) {
   if (branch.excess > 0) branch.span = svd.matrixU().leftCols(rank);
 }
 
-/// From a short step away to generic postures. Where the first random step does not go straight on,
-/// some freedoms are never more than instantaneous, and second order counts the rest.
+/// A step along a random freedom, shortened when the long one leaves what closes.
+double Explorer::wander(Posture& posture, const Eigen::MatrixXd& kernel, double length) {
+  const Eigen::VectorXd rates = kernel * random_direction(random_, kernel.cols());
+  double bend = step(posture, rates, length);
+  for (int halving = 0; bend < 0 && halving < 3; ++halving)
+    bend = step(posture, rates, length /= 2);
+  return bend;
+}
+
+/// Where a random step does not go straight on, some freedoms are never more than instantaneous,
+/// and second order counts the rest.
+bool Explorer::is_shaky(Branch& branch, const Posture& near) {
+  Posture posture = near;
+  const double bend = wander(posture, branch.near_kernel, 2 * kShort);
+  if (bend >= 0 && bend < kStraight) return false;
+  const SecondOrder allowed = second_order(model_, near, branch.near_kernel, active_, random_);
+  if (!allowed.directions.empty()) find_span(branch, allowed.directions);
+  if (branch.excess > 0) branch.far = {near};
+  return branch.excess > 0;
+}
+
+/// From a short step away to generic postures.
 void Explorer::walk_far(Branch& branch, const Posture& near) {
   for (int walk = 0; walk < options_.walks; ++walk) {
-    Posture posture = near;
-    Eigen::MatrixXd kernel = branch.near_kernel;
-    for (int i = 0; i <= options_.steps; ++i) {
-      const Eigen::VectorXd rates = kernel * random_direction(random_, kernel.cols());
-      double length = i == 0 ? 2 * kShort : options_.step;
-      double bend = step(posture, rates, length);
-      // A long step may leave what closes; a shorter one of the same walk need not.
-      for (int halving = 0; bend < 0 && halving < 3; ++halving)
-        bend = step(posture, rates, length /= 2);
-      if (walk == 0 && i == 0 && !(bend >= 0 && bend < kStraight)) {
-        const SecondOrder shaky = second_order(model_, near, kernel, active_, random_);
-        if (shaky.directions.empty()) break;
-        find_span(branch, shaky.directions);
-        if (branch.excess > 0) {
-          branch.far = {near};
-          return;
-        }
-      }
-      if (bend < 0) break;
-      if (i < options_.steps) kernel = kernel_at(posture);
-    }
-    branch.far.push_back(std::move(posture));
+    branch.far.push_back(near);
+    go_on(branch.far.back(), branch.near_kernel);
+  }
+}
+
+void Explorer::go_on(Posture& posture, Eigen::MatrixXd kernel) {
+  for (int i = 0; i < options_.steps; ++i) {
+    if (wander(posture, kernel, options_.step) < 0) return;
+    if (i + 1 < options_.steps) kernel = kernel_at(posture);
   }
 }
 
@@ -128,7 +138,6 @@ bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
     if (near_kernel.cols() != kernel.cols()) return false;
     Branch branch{std::move(near_kernel), {}, {}, 0};
     walk_far(branch, near);
-    if (branch.excess > 0) return false;
     result_.branches.push_back(std::move(branch));
     return true;
   }
@@ -143,7 +152,7 @@ void Explorer::meet(Posture near) {
   });
   if (known) return;
   Branch branch{std::move(kernel), {}, {}, 0};
-  walk_far(branch, near);
+  if (!is_shaky(branch, near)) walk_far(branch, near);
   result_.branches.push_back(std::move(branch));
 }
 
@@ -181,6 +190,12 @@ Departure Explorer::leave(const Eigen::MatrixXd& kernel) {
 Departure leave(const Model& model, const Posture& home, const Eigen::MatrixXd& kernel, bool held,
                 const WalkOptions& options, std::mt19937_64& random) {
   return Explorer(model, home, held, options, random).leave(kernel);
+}
+
+void walk_on(const Model& model, Posture& posture, const WalkOptions& options,
+             std::mt19937_64& random) {
+  Explorer(model, posture, false, options, random)
+      .go_on(posture, freedoms_at(model, posture).kernel);
 }
 
 }  // namespace polyglide

@@ -41,4 +41,8 @@ struct Departure {
                               const Eigen::MatrixXd& kernel, bool held, const WalkOptions& options,
                               std::mt19937_64& random);
 
+/// Goes on along random freedoms for `options.steps` steps, or as far as loops close.
+void walk_on(const Model& model, Posture& posture, const WalkOptions& options,
+             std::mt19937_64& random);
+
 }  // namespace polyglide

@@ -14,6 +14,7 @@ namespace {
 constexpr double kDoubtfulGap = 1e3;  // contract: a smaller gap is said in the reasons
 constexpr double kDrawn = 1e-11;  // closure or rank noise above it comes from rounded coordinates
 constexpr double kMoved = 0.02;   // of a step: a platform that went less far has not moved
+constexpr int kFarther = 3;       // steps made on when the drives seem not to hold
 constexpr double kStray = 1e-5;   // [rad, or length/size] of a coordinate said to stay zero
 
 /// What was measured on one motion branch.
@@ -89,9 +90,16 @@ void Analysis::look_at_home() {
 
 void Analysis::explore_branches() {
   departure_ = leave(model_, home_, home_free_.kernel, false, walk_options(), random_);
-  for (const Branch& branch : departure_.branches) branches_.push_back(measure(branch));
   report_.residual = departure_.residual;
   report_.obstructions = departure_.obstructions;
+  for (Branch& branch : departure_.branches) {
+    branches_.push_back(measure(branch));
+    // Near a self-motion the drives hardly hold: only farther away is it seen that they do.
+    if (branches_.back().locked.platform_rank.rank == 0 || branch.excess > 0) continue;
+    branch.far.push_back(branch.far.back());
+    walk_on(model_, branch.far.back(), {1, kFarther, 0.25}, random_);
+    branches_.back() = measure(branch);
+  }
 }
 
 Measured Analysis::measure(const Branch& branch) {
@@ -179,7 +187,9 @@ void Analysis::describe_task() {
 /// Generic postures do not show it: equal parallel legs, for example, let go at
 /// home only.
 void Analysis::look_for_self_motion() {
-  if (report_.home_locked_platform == 0) return;
+  const bool settled =
+      report_.locked_platform > 0 || (report_.home > report_.finite && branches_.size() > 1);
+  if (report_.home_locked_platform == 0 || settled) return;
   const Departure held =
       leave(model_, home_, home_locked_.kernel, true, {1, options_.steps, 0.25}, random_);
   self_motion_ = std::ranges::any_of(held.branches, [&](const Branch& branch) {

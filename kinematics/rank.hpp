@@ -31,8 +31,8 @@ struct RankScale {
 /// @param reference a value known to be real, in the same scale (0 = none): with
 ///        it everything can be dropped, so noise beside it has rank 0.
 /// @param scale what counts as noise and as real in these values
-[[nodiscard]] RankDecision decide_rank(const Eigen::VectorXd& singular_values,
-                                       double reference = 0, const RankScale& scale = {});
+[[nodiscard]] RankDecision decide_rank(const Eigen::VectorXd& singular_values, double reference = 0,
+                                       const RankScale& scale = {});
 
 /// Rank and kernel of a matrix.
 struct Kernel {
