@@ -8,11 +8,14 @@
 namespace polyglide {
 namespace {
 
-constexpr double kShort = 0.03;       // first step: tangents still tell branches apart
-constexpr double kStraight = 0.3;     // of a step: a smooth manifold leaves its tangent no further
-constexpr double kSameBranch = 0.35;  // sine of the angle between tangent spaces, 20 degrees
-constexpr double kExplained = 0.26;   // sine of the angle from a direction to a known branch
-constexpr int kMostFailures = 6;      // directions allowed by second order that lead nowhere
+constexpr double kShort = 0.03;        // first step: tangents still tell branches apart
+constexpr double kStraight = 0.3;      // of a step: a smooth manifold leaves its tangent no further
+constexpr double kCrossed = 0.4;       // of a long step
+constexpr double kTurned = 0.6;        // sine of the angle a tangent space turns on a long step
+constexpr double kNearSingular = 0.1;  // of the smallest singular value one step before
+constexpr double kSameBranch = 0.35;   // sine of the angle between tangent spaces, 20 degrees
+constexpr double kExplained = 0.26;    // sine of the angle from a direction to a known branch
+constexpr int kMostFailures = 6;       // directions allowed by second order that lead nowhere
 
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& basis) {
   return Eigen::HouseholderQR<Eigen::MatrixXd>(basis).householderQ() *
@@ -40,19 +43,19 @@ class Explorer {
         active_(held ? passive_freedoms(model) : all_freedoms(model)) {}
 
   Departure leave(const Eigen::MatrixXd& kernel);
-  void go_on(Posture& posture, Eigen::MatrixXd kernel);
+  void go_on(Place& place);
 
  private:
   /// A step along scaled rates of all freedoms. How far the manifold was left of the
   /// straight way, as part of the step; negative when there was no way.
   double step(Posture& posture, const Eigen::VectorXd& rates, double length);
-  [[nodiscard]] Eigen::MatrixXd kernel_at(const Posture& posture) const;
+  [[nodiscard]] Eigen::MatrixXd kernel_of(const Freedoms& free) const;
+  bool wander(Place& place, double length);
   bool leave_smoothly(const Eigen::MatrixXd& kernel);
   void leave_by_second_order(const Eigen::MatrixXd& kernel);
-  void meet(Posture near);
-  double wander(Posture& posture, const Eigen::MatrixXd& kernel, double length);
-  bool is_shaky(Branch& branch, const Posture& near);
-  void walk_far(Branch& branch, const Posture& near);
+  void meet(Posture posture);
+  bool is_shaky(Branch& branch, const Place& near);
+  void walk_far(Branch& branch, const Place& near);
 
   const Model& model_;
   const Posture& home_;
@@ -76,8 +79,7 @@ double Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double len
   return displacement(model_, straight, posture) / length;
 }
 
-Eigen::MatrixXd Explorer::kernel_at(const Posture& posture) const {
-  const Freedoms free = freedoms_at(model_, posture);
+Eigen::MatrixXd Explorer::kernel_of(const Freedoms& free) const {
   return held_ ? hold_drives(model_, free).kernel : free.kernel;
 }
 
@@ -92,66 +94,77 @@ void find_span(Branch& branch, const std::vector<Eigen::VectorXd>& directions) {
   if (branch.excess > 0) branch.span = svd.matrixU().leftCols(rank);
 }
 
-/// A step along a random freedom, shortened when the long one leaves what closes.
-double Explorer::wander(Posture& posture, const Eigen::MatrixXd& kernel, double length) {
+/// A step along a random freedom, shortened where the long one leaves what closes or may
+/// have crossed to another branch: there the way bends or the tangent space turns at once, or has
+/// another dimension. Keeps away from singular postures, where branches meet and counts waver.
+bool Explorer::wander(Place& place, double length) {
+  const Eigen::MatrixXd kernel = kernel_of(place.free);
   const Eigen::VectorXd rates = kernel * random_direction(random_, kernel.cols());
-  double bend = step(posture, rates, length);
-  for (int halving = 0; bend < 0 && halving < 3; ++halving)
-    bend = step(posture, rates, length /= 2);
-  return bend;
+  for (int halving = 0; halving < 4; ++halving, length /= 2) {
+    Posture posture = place.posture;
+    const double bend = step(posture, rates, length);
+    if (bend < 0 || bend > kCrossed) continue;
+    Freedoms free = freedoms_at(model_, posture);
+    if (free.rank.smallest < kNearSingular * place.free.rank.smallest) continue;
+    const Eigen::MatrixXd there = kernel_of(free);
+    if (there.cols() != kernel.cols() || separation(kernel, there) > kTurned) continue;
+    place = {std::move(posture), std::move(free)};
+    return true;
+  }
+  return false;
 }
 
 /// Where a random step does not go straight on, some freedoms are never more than instantaneous,
 /// and second order counts the rest.
-bool Explorer::is_shaky(Branch& branch, const Posture& near) {
-  Posture posture = near;
-  const double bend = wander(posture, branch.near_kernel, 2 * kShort);
+bool Explorer::is_shaky(Branch& branch, const Place& near) {
+  Posture posture = near.posture;
+  const double bend = step(
+      posture, branch.near_kernel * random_direction(random_, branch.near_kernel.cols()), kShort);
   if (bend >= 0 && bend < kStraight) return false;
-  const SecondOrder allowed = second_order(model_, near, branch.near_kernel, active_, random_);
+  const SecondOrder allowed =
+      second_order(model_, near.posture, branch.near_kernel, active_, random_);
   if (!allowed.directions.empty()) find_span(branch, allowed.directions);
   if (branch.excess > 0) branch.far = {near};
   return branch.excess > 0;
 }
 
 /// From a short step away to generic postures.
-void Explorer::walk_far(Branch& branch, const Posture& near) {
+void Explorer::walk_far(Branch& branch, const Place& near) {
   for (int walk = 0; walk < options_.walks; ++walk) {
     branch.far.push_back(near);
-    go_on(branch.far.back(), branch.near_kernel);
+    go_on(branch.far.back());
   }
 }
 
-void Explorer::go_on(Posture& posture, Eigen::MatrixXd kernel) {
-  for (int i = 0; i < options_.steps; ++i) {
-    if (wander(posture, kernel, options_.step) < 0) return;
-    if (i + 1 < options_.steps) kernel = kernel_at(posture);
-  }
+void Explorer::go_on(Place& place) {
+  for (int i = 0; i < options_.steps; ++i)
+    if (!wander(place, options_.step)) return;
 }
 
 bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
   for (const double length : {kShort, kShort / 4}) {
-    Posture near = home_;
-    const Eigen::VectorXd rates = kernel * random_direction(random_, kernel.cols());
-    const double bend = step(near, rates, length);
+    Posture posture = home_;
+    const double bend = step(posture, kernel * random_direction(random_, kernel.cols()), length);
     if (bend < 0 || bend > kStraight) continue;
-    Eigen::MatrixXd near_kernel = kernel_at(near);
-    if (near_kernel.cols() != kernel.cols()) return false;
-    Branch branch{std::move(near_kernel), {}, {}, 0};
-    walk_far(branch, near);
+    Freedoms free = freedoms_at(model_, posture);
+    Branch branch{kernel_of(free), {}, {}, 0};
+    if (branch.near_kernel.cols() != kernel.cols()) return false;
+    walk_far(branch, {std::move(posture), std::move(free)});
     result_.branches.push_back(std::move(branch));
     return true;
   }
   return false;
 }
 
-void Explorer::meet(Posture near) {
-  Eigen::MatrixXd kernel = kernel_at(near);
-  const bool known = std::ranges::any_of(result_.branches, [&](const Branch& branch) {
-    return branch.near_kernel.cols() == kernel.cols() &&
-           separation(branch.near_kernel, kernel) < kSameBranch;
+void Explorer::meet(Posture posture) {
+  Freedoms free = freedoms_at(model_, posture);
+  Branch branch{kernel_of(free), {}, {}, 0};
+  const bool known = std::ranges::any_of(result_.branches, [&](const Branch& other) {
+    return other.near_kernel.cols() == branch.near_kernel.cols() &&
+           separation(other.near_kernel, branch.near_kernel) < kSameBranch;
   });
   if (known) return;
-  Branch branch{std::move(kernel), {}, {}, 0};
+  const Place near{std::move(posture), std::move(free)};
   if (!is_shaky(branch, near)) walk_far(branch, near);
   result_.branches.push_back(std::move(branch));
 }
@@ -192,10 +205,10 @@ Departure leave(const Model& model, const Posture& home, const Eigen::MatrixXd& 
   return Explorer(model, home, held, options, random).leave(kernel);
 }
 
-void walk_on(const Model& model, Posture& posture, const WalkOptions& options,
+void walk_on(const Model& model, Place& place, const WalkOptions& options,
              std::mt19937_64& random) {
-  Explorer(model, posture, false, options, random)
-      .go_on(posture, freedoms_at(model, posture).kernel);
+  const Posture start = place.posture;
+  Explorer(model, start, false, options, random).go_on(place);
 }
 
 }  // namespace polyglide

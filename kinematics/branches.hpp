@@ -13,10 +13,16 @@ struct WalkOptions {
   double step = 0.25;  ///< length of a long step [rad, or length/size of the fastest joint]
 };
 
+/// A posture that was reached, and the freedoms there with nothing held.
+struct Place {
+  Posture posture;
+  Freedoms free;
+};
+
 /// One motion branch through a posture.
 struct Branch {
   Eigen::MatrixXd near_kernel;  ///< tangent space a short step away, freedoms × dimension
-  std::vector<Posture> far;     ///< generic postures on it
+  std::vector<Place> far;       ///< generic postures on it
   Eigen::MatrixXd span;  ///< where freedoms never continue: coordinates within near_kernel of
                          ///< those that do; far is then that near posture. Else empty.
   int excess = 0;  ///< instantaneous freedoms everywhere on it that never continue (shakiness)
@@ -41,8 +47,8 @@ struct Departure {
                               const Eigen::MatrixXd& kernel, bool held, const WalkOptions& options,
                               std::mt19937_64& random);
 
-/// Goes on along random freedoms for `options.steps` steps, or as far as loops close.
-void walk_on(const Model& model, Posture& posture, const WalkOptions& options,
-             std::mt19937_64& random);
+/// Goes on along random freedoms for `options.steps` steps, or as far as the branch is not in
+/// doubt.
+void walk_on(const Model& model, Place& place, const WalkOptions& options, std::mt19937_64& random);
 
 }  // namespace polyglide

@@ -14,8 +14,9 @@ namespace {
 constexpr double kDoubtfulGap = 1e3;  // contract: a smaller gap is said in the reasons
 constexpr double kDrawn = 1e-11;  // closure or rank noise above it comes from rounded coordinates
 constexpr double kMoved = 0.02;   // of a step: a platform that went less far has not moved
-constexpr int kFarther = 3;       // steps made on when the drives seem not to hold
-constexpr double kStray = 1e-5;   // [rad, or length/size] of a coordinate said to stay zero
+constexpr double kNearSingular = 0.03;  // of the best conditioned posture's smallest singular value
+constexpr int kFarther = 3;             // steps made on when the drives seem not to hold
+constexpr double kStray = 1e-5;         // [rad, or length/size] of a coordinate said to stay zero
 
 /// What was measured on one motion branch.
 struct Measured {
@@ -104,8 +105,11 @@ void Analysis::explore_branches() {
 
 Measured Analysis::measure(const Branch& branch) {
   Measured found;
-  for (const Posture& posture : branch.far) {
-    Freedoms free = freedoms_at(model_, posture);
+  double best = 0;
+  for (const Place& place : branch.far) best = std::max(best, place.free.rank.smallest);
+  for (const auto& [posture, there] : branch.far) {
+    if (there.rank.smallest < kNearSingular * best) continue;  // counts waver there
+    Freedoms free = there;
     Freedoms locked = hold_drives(model_, free);
     if (branch.excess > 0) {
       free.kernel = branch.near_kernel * branch.span;
@@ -115,8 +119,9 @@ Measured Analysis::measure(const Branch& branch) {
     }
     note(free);
     note(locked);
+    // Fewest freedoms are generic; among equals the posture farthest from singular.
     const auto generic = [](const Freedoms& all, const Freedoms& held) {
-      return std::tuple(all.mobility, held.mobility, -all.platform_rank.rank);
+      return std::tuple(all.mobility, held.mobility, -all.platform_rank.rank, -all.rank.smallest);
     };
     if (found.at && generic(free, locked) >= generic(found.free, found.locked)) continue;
     found.task = task_axes(free);
@@ -160,7 +165,7 @@ void Analysis::describe_task() {
   Screw stray = Screw::Zero();
   Eigen::MatrixXd turns(3, far.size());
   for (std::size_t i = 0; i < far.size(); ++i) {
-    const Transform& body = far[i].bodies[platform];
+    const Transform& body = far[i].posture.bodies[platform];
     const Eigen::AngleAxisd turn(body.linear());
     turns.col(static_cast<Eigen::Index>(i)) = turn.angle() * turn.axis();
     const Vector3 way = body * model_.mechanism.tool - model_.mechanism.tool;
@@ -193,10 +198,11 @@ void Analysis::look_for_self_motion() {
   const Departure held =
       leave(model_, home_, home_locked_.kernel, true, {1, options_.steps, 0.25}, random_);
   self_motion_ = std::ranges::any_of(held.branches, [&](const Branch& branch) {
-    return std::ranges::any_of(branch.far, [&](const Posture& posture) {
-      const double way = displacement(model_, home_, posture);
-      return displacement(model_, home_, posture, model_.mechanism.platform) > kMoved * way &&
-             hold_drives(model_, freedoms_at(model_, posture)).platform_rank.rank > 0;
+    return std::ranges::any_of(branch.far, [&](const Place& place) {
+      const double way = displacement(model_, home_, place.posture);
+      const int platform = model_.mechanism.platform;
+      return displacement(model_, home_, place.posture, platform) > kMoved * way &&
+             hold_drives(model_, place.free).platform_rank.rank > 0;
     });
   });
   report_.residual = std::max(report_.residual, held.residual);

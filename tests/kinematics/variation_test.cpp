@@ -104,13 +104,13 @@ TEST_P(VerdictOf, HoldsFromAnotherPostureOfTheBranch) {
   const Freedoms free = freedoms_at(model, start);
   const Departure departure = leave(model, start, free.kernel, false, {2, 2, 0.2}, random);
   if (departure.branches.size() != 1) GTEST_SKIP() << "home is a meeting of branches, or rigid";
-  for (const Posture& posture : departure.branches.front().far) {
-    const MobilityReport there = check(variations::taken_at(model, posture));
-    expect_same_motion(reference_, there);
+  for (const auto& [posture, there] : departure.branches.front().far) {
+    const MobilityReport report = check(variations::taken_at(model, posture));
+    expect_same_motion(reference_, report);
     const bool regular =
         departure.smooth && reference_.home_locked_platform == reference_.locked_platform;
     if (regular) {
-      EXPECT_EQ(to_string(there.verdict), to_string(reference_.verdict));
+      EXPECT_EQ(to_string(report.verdict), to_string(reference_.verdict));
     }
   }
 }
