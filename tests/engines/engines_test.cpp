@@ -65,19 +65,23 @@ struct Counts {
   }
 };
 
-/// The kernel by a rule of its own: values below 1e-7 of the largest are zero. Ours decides
-/// by the largest gap; machines at drawing precision fall in between (see kDrawn).
+/// A rule of its own: singular values below 1e-7 are zero. Ours looks for the largest gap.
+constexpr double kZero = 1e-7;
+
 Eigen::MatrixXd kernel(const Eigen::MatrixXd& matrix) {
-  if (matrix.rows() == 0) return Eigen::MatrixXd::Identity(matrix.cols(), matrix.cols());
+  if (matrix.size() == 0) return Eigen::MatrixXd::Identity(matrix.cols(), matrix.cols());
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullV);
   const auto& values = svd.singularValues();
-  Eigen::Index rank = 0;
-  while (rank < values.size() && values[rank] > 1e-7 * std::max(values[0], 1e-300)) ++rank;
+  const auto rank = (values.array() > kZero * std::max(values[0], 1e-300)).count();
   return svd.matrixV().rightCols(matrix.cols() - rank);
 }
 
-int rank(const Eigen::MatrixXd& matrix) {
-  return static_cast<int>(matrix.cols() - kernel(matrix).cols());
+/// Number of independent platform velocities among the motions that are free.
+int platform_freedom(const Eigen::MatrixXd& platform, const Eigen::MatrixXd& free) {
+  if (free.size() == 0) return 0;
+  const Eigen::MatrixXd velocities = platform * free;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(velocities);
+  return static_cast<int>((svd.singularValues().array() > kZero * platform.norm()).count());
 }
 
 /// Ranks of a system whose lengths are measured in `size`.
@@ -103,13 +107,13 @@ Counts counts_of(const ConstraintSystem& system, double size) {
                      (r < system.row_is_length.size() && system.row_is_length[r] ? size : 1));
   const Eigen::MatrixXd free = kernel(jacobian);
   counts.mobility = static_cast<int>(free.cols());
-  counts.platform = rank(platform * free);
+  counts.platform = platform_freedom(platform, free);
   std::vector<int> passive;
   for (int c = 0; c < system.columns; ++c)
     if (!system.column_is_driven[c]) passive.push_back(c);
   const Eigen::MatrixXd held = kernel(jacobian(Eigen::all, passive));
   counts.held_mobility = static_cast<int>(held.cols());
-  counts.held_platform = rank(platform(Eigen::all, passive) * held);
+  counts.held_platform = platform_freedom(platform(Eigen::all, passive), held);
   return counts;
 }
 
