@@ -1,6 +1,7 @@
 #include "catalog/engine_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "catalog/spanning_tree.hpp"
 
@@ -84,6 +85,10 @@ double bar_radius(const Mechanism& mechanism) {
   }
   const double extent = (high - low).norm();
   return extent > 0 ? extent / 100 : 0.01;
+}
+
+double bar_density(const Mechanism& mechanism) {
+  return 2700 * std::max(1.0, std::pow(0.05 / (100 * bar_radius(mechanism)), 5));
 }
 
 std::string freedom_name(const Joint& joint, int freedom) {

@@ -60,6 +60,10 @@ struct StickFigure {
 /// Bar radius that suits the machine: a hundredth of its extent [m], above zero.
 [[nodiscard]] double bar_radius(const Mechanism& mechanism);
 
+/// Density of the bars [kg/m³]: aluminium's. Below an extent of 50 mm more, so that moments of
+/// inertia (∝ extent⁵) stay above what engines take for zero.
+[[nodiscard]] double bar_density(const Mechanism& mechanism);
+
 /// "knee" for the only freedom of a joint, "knee.2" for the second of several.
 [[nodiscard]] std::string freedom_name(const Joint& joint, int freedom);
 

@@ -9,7 +9,6 @@
 namespace polyglide {
 namespace {
 
-constexpr double kAluminium = 2700;                       // [kg/m³]
 constexpr double kBandwidth = 2 * std::numbers::pi * 10;  // of the position drives [rad/s]
 
 class MjcfWriter {
@@ -18,7 +17,8 @@ class MjcfWriter {
       : mechanism_(mechanism),
         tree_(engine_tree(mechanism)),
         figures_(stick_figures(mechanism, tree_)),
-        radius_(bar_radius(mechanism)) {
+        radius_(bar_radius(mechanism)),
+        density_(bar_density(mechanism)) {
     (void)body_names_.take("world");  // what MuJoCo calls the space around
     for (const EngineLink& link : tree_.links)
       names_.push_back(body_names_.take(link.body >= 0
@@ -58,7 +58,7 @@ class MjcfWriter {
     defaults.add("geom")
         .set("type", "capsule")
         .set("size", xml_number(radius_))
-        .set("density", xml_number(kAluminium))
+        .set("density", xml_number(density_))
         .set("contype", "0")
         .set("conaffinity", "0")
         .set("rgba", "0.6 0.65 0.7 1");
@@ -131,8 +131,8 @@ class MjcfWriter {
     if (link.body < 0) {
       element.add("inertial")
           .set("pos", "0 0 0")
-          .set("mass", xml_number(kAluminium * std::pow(radius_, 3)))
-          .set("diaginertia", xml_vector(Vector3::Constant(kAluminium * std::pow(radius_, 5))));
+          .set("mass", xml_number(density_ * std::pow(radius_, 3)))
+          .set("diaginertia", xml_vector(Vector3::Constant(density_ * std::pow(radius_, 5))));
       return;
     }
     for (const Vector3& end : figures_[index].ends)
@@ -157,7 +157,7 @@ class MjcfWriter {
   /// What a drive has to move, guessed high: bars as long as half the machine [kg or kg m²].
   double moved(const EngineMotion& motion) const {
     const double length = 50 * radius_;
-    const double mass = kAluminium * std::numbers::pi * radius_ * radius_ * length *
+    const double mass = density_ * std::numbers::pi * radius_ * radius_ * length *
                         static_cast<double>(tree_.links.size());
     return motion.motion.translation ? mass : mass * length * length;
   }
@@ -173,7 +173,7 @@ class MjcfWriter {
   const Mechanism& mechanism_;
   EngineTree tree_;
   std::vector<StickFigure> figures_;
-  double radius_;
+  double radius_, density_;  ///< of the bars
   UniqueNames body_names_, joint_names_, equality_names_, actuator_names_;
   std::vector<std::string> names_;  ///< per link
   XmlElement equalities_{"equality", {}, {}}, actuators_{"actuator", {}, {}};

@@ -10,8 +10,7 @@
 namespace polyglide {
 namespace {
 
-constexpr double kAluminium = 2700;  // [kg/m³]
-constexpr double kUnlimited = 1e6;   // URDF wants numbers for every prismatic joint
+constexpr double kUnlimited = 1e6;  // URDF wants numbers for every prismatic joint
 
 /// 'a', with quotes doubled: YAML's plainest string.
 std::string quoted(const std::string& text) {
@@ -32,7 +31,8 @@ class UrdfWriter {
       : mechanism_(mechanism),
         tree_(engine_tree(mechanism)),
         figures_(stick_figures(mechanism, tree_)),
-        radius_(bar_radius(mechanism)) {
+        radius_(bar_radius(mechanism)),
+        density_(bar_density(mechanism)) {
     root_.set("name", mechanism.name);
     // Links first, so that bodies keep their names. Readers keep links and joints in one
     // list of frames, so no name may serve twice.
@@ -148,7 +148,7 @@ class UrdfWriter {
   /// A bar is a sixth of its mass at either end and the rest in its middle (Simpson's rule,
   /// exact for a thin rod); a ball at the joint keeps the inertia positive.
   void add_inertia(XmlElement& link, const std::vector<Vector3>& ends) const {
-    const double section = kAluminium * std::numbers::pi * radius_ * radius_;
+    const double section = density_ * std::numbers::pi * radius_ * radius_;
     double mass = section * radius_;
     Vector3 first = Vector3::Zero();
     Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
@@ -189,7 +189,7 @@ class UrdfWriter {
   const Mechanism& mechanism_;
   EngineTree tree_;
   std::vector<StickFigure> figures_;
-  double radius_;
+  double radius_, density_;  ///< of the bars
   UniqueNames unique_;
   std::vector<std::string> names_;  ///< per link
   XmlElement root_{"robot", {}, {}};

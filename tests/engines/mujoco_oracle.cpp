@@ -80,10 +80,12 @@ ConstraintSystem MujocoModel::constraints() {
   return answer;
 }
 
-std::vector<double> MujocoModel::body_position(const std::string& body) {
+std::vector<double> MujocoModel::body_pose(const std::string& body) {
   place();
-  const double* position = data_->xpos + 3 * find(mjOBJ_BODY, body);
-  return {position, position + 3};
+  const int id = find(mjOBJ_BODY, body);
+  std::vector<double> pose(data_->xpos + 3 * id, data_->xpos + 3 * id + 3);
+  pose.insert(pose.end(), data_->xquat + 4 * id, data_->xquat + 4 * id + 4);
+  return pose;
 }
 
 std::vector<double> MujocoModel::body_jacobian(const std::string& body) {

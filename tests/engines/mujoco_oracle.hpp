@@ -32,7 +32,8 @@ class MujocoModel {
   [[nodiscard]] int expected_rows() const;
 
   [[nodiscard]] int velocities() const;
-  [[nodiscard]] std::vector<double> body_position(const std::string& body);  ///< [m]
+  /// Of the body's frame: position [m], then its quaternion (w, x, y, z).
+  [[nodiscard]] std::vector<double> body_pose(const std::string& body);
   /// 6 × velocities, row by row: angular, then linear velocity of the body's origin.
   [[nodiscard]] std::vector<double> body_jacobian(const std::string& body);
   /// Index of the velocity of a hinge or slide.
