@@ -345,19 +345,21 @@ class Engines : public testing::TestWithParam<std::string> {
   Model model_ = compile(expand(find_layout(GetParam())));
 };
 
-TEST_P(Engines, MujocoAgreesAtHome) {
-  expect_closed_and_equal(mujoco_counts(model_), counts_of(model_));
+TEST_P(Engines, AgreeAtHome) {
+  const Counts ours = counts_of(model_);
+  {
+    SCOPED_TRACE("MuJoCo, from the MJCF");
+    expect_closed_and_equal(mujoco_counts(model_), ours);
+  }
+  {
+    SCOPED_TRACE("MuJoCo, from the URDF and its loops");
+    expect_closed_and_equal(urdf_counts(model_), ours);
+  }
+  SCOPED_TRACE("Simbody, from the joint graph");
+  expect_closed_and_equal(simbody_counts(model_), ours);
 }
 
-TEST_P(Engines, SimbodyAgreesAtHome) {
-  expect_closed_and_equal(simbody_counts(model_), counts_of(model_));
-}
-
-TEST_P(Engines, TheUrdfTreeWithItsLoopsAgreesAtHome) {
-  expect_closed_and_equal(urdf_counts(model_), counts_of(model_));
-}
-
-TEST_P(Engines, MujocoAgreesAwayFromHome) {
+TEST_P(Engines, AgreeAwayFromHome) {
   const MobilityReport report = report_of(model_);
   Posture posture = home(model_);
   if (!walk(model_, posture)) {
