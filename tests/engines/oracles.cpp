@@ -73,7 +73,7 @@ bool walk(const Model& model, Posture& posture) {
   for (double& entry : direction) entry = uniform();
   for (int step = 0; step < 4; ++step) {
     const Eigen::VectorXd along = tangent(model, posture, active, direction);
-    if (along.isZero() || !step_along(model, posture, active, along, 0.1)) break;
+    if (along.isZero() || !step_along(model, posture, active, along, 0.1).closed) break;
   }
   return displacement(model, home(model), posture) > 0.01;
 }

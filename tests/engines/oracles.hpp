@@ -23,7 +23,7 @@ void expect_closed_and_equal(const Counts& found, const Counts& ours);
 Counts expect_agreement_at(const Model& model, const Posture& posture);
 
 /// Some steps from home along the constraint manifold. False when the mechanism has not
-/// moved: a step along an infinitesimal freedom falls back to home.
+/// moved: a step along an infinitesimal freedom cannot be closed again.
 [[nodiscard]] bool walk(const Model& model, Posture& posture);
 
 }  // namespace polyglide::engines
