@@ -43,9 +43,9 @@ std::string test_name(const testing::TestParamInfo<std::string>& info) {
 /// Where a count at one posture is not that of the report, and why.
 const std::map<std::string, std::string> kExplained{
     {"table1-4",
-     "With its drives held it is singular at home and the smallest singular value grows only with "
-     "the third power of the way from there: this walk ends at 1e-7 of the largest, which the "
-     "fixed threshold here takes for zero. polyglide decides by the largest gap: not zero."}};
+     "With its drives held it is singular at home, and the smallest singular value grows only with "
+     "the third power of the way from there. This walk ends at 1e-7 of the largest, which one "
+     "posture cannot tell from zero; the report looks at several and finds it to be more."}};
 
 class Engines : public testing::TestWithParam<std::string> {
  protected:
