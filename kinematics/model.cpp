@@ -1,59 +1,21 @@
 #include "kinematics/model.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <numeric>
-#include <stdexcept>
+
+#include "catalog/elementary_motion.hpp"
+#include "catalog/spanning_tree.hpp"
 
 namespace polyglide {
 namespace {
 
-Screw rotation_screw(const Vector3& axis, const Vector3& point, double pitch = 0) {
+/// Unit twist about or along an axis through `point`.
+Screw screw_of(const ElementaryMotion& motion, const Vector3& point) {
   Screw screw;
-  screw << axis, point.cross(axis) + pitch * axis;
+  if (motion.translation)
+    screw << Vector3::Zero(), motion.axis;
+  else
+    screw << motion.axis, point.cross(motion.axis) + motion.pitch * motion.axis;
   return screw;
-}
-
-Screw translation_screw(const Vector3& direction) {
-  Screw screw;
-  screw << Vector3::Zero(), direction;
-  return screw;
-}
-
-/// A unit vector perpendicular to `axis`, the same for the same axis.
-Vector3 perpendicular(const Vector3& axis) {
-  int smallest = 0;
-  axis.cwiseAbs().minCoeff(&smallest);
-  return axis.cross(Vector3::Unit(smallest)).normalized();
-}
-
-std::vector<Screw> joint_screws(const Joint& joint) {
-  const Vector3& axis = joint.axes[0];
-  switch (joint.type) {
-    case JointType::revolute:
-      return {rotation_screw(axis, joint.at)};
-    case JointType::prismatic:
-      return {translation_screw(axis)};
-    case JointType::helical:
-      return {rotation_screw(axis, joint.at, joint.pitch)};
-    case JointType::cylindrical:
-      return {rotation_screw(axis, joint.at), translation_screw(axis)};
-    case JointType::universal:
-      return {rotation_screw(axis, joint.at), rotation_screw(joint.axes[1], joint.at)};
-    case JointType::spherical:
-      return {rotation_screw(Vector3::UnitX(), joint.at),
-              rotation_screw(Vector3::UnitY(), joint.at),
-              rotation_screw(Vector3::UnitZ(), joint.at)};
-    case JointType::planar: {
-      const Vector3 u = perpendicular(axis);
-      return {translation_screw(u), translation_screw(axis.cross(u)),
-              rotation_screw(axis, joint.at)};
-    }
-    case JointType::weld:
-      return {};
-  }
-  return {};
 }
 
 /// exp(q·screw): rotation about, and advance along, the screw's axis.
@@ -108,34 +70,6 @@ void place_bodies(const Model& model, Posture& posture) {
   }
 }
 
-/// Joints in the order in which they should join the tree: driven ones and those
-/// with few freedoms first, so that loops are closed by passive joints with many
-/// freedoms, which leave the fewest equations.
-std::vector<int> tree_preference(const Mechanism& mechanism) {
-  std::vector<int> order(mechanism.joints.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](int j) {
-    return std::pair(mechanism.joints[j].driven.empty(), freedoms(mechanism.joints[j].type));
-  };
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
-  return order;
-}
-
-/// Spanning tree of the bodies by Kruskal's rule; the other joints close loops.
-std::vector<bool> choose_tree(const Mechanism& mechanism) {
-  std::vector<int> group(mechanism.bodies.size());
-  std::iota(group.begin(), group.end(), 0);
-  std::vector<bool> in_tree(mechanism.joints.size(), false);
-  for (int j : tree_preference(mechanism)) {
-    const auto [first, second] = mechanism.joints[j].bodies;
-    const int from = group[second], to = group[first];
-    if (from == to) continue;
-    in_tree[j] = true;
-    std::replace(group.begin(), group.end(), from, to);
-  }
-  return in_tree;
-}
-
 /// Joints from the base to a body along the tree.
 std::vector<LoopStep> path_to(const Model& model, int body) {
   std::vector<LoopStep> path;
@@ -164,41 +98,23 @@ std::vector<LoopStep> loop_of(const Model& model, int closing) {
   return loop;
 }
 
-/// Walks the tree outwards from the base and notes every body's path.
+/// Notes the spanning tree and every body's path through it.
 void build_tree(Model& model) {
   const Mechanism& mechanism = model.mechanism;
-  const int bodies = static_cast<int>(mechanism.bodies.size());
-  const int joints = static_cast<int>(mechanism.joints.size());
-  const std::vector<bool> in_tree = choose_tree(mechanism);
-  model.parent_joint.assign(bodies, -1);
-  model.path = Eigen::MatrixXi::Zero(bodies, joints);
-  std::vector<bool> seen(bodies, false);
-  model.body_order = {mechanism.base};
-  seen[mechanism.base] = true;
-  for (std::size_t next = 0; next < model.body_order.size(); ++next) {
-    const int body = model.body_order[next];
-    for (int j = 0; j < joints; ++j) {
-      const auto [first, second] = mechanism.joints[j].bodies;
-      if (!in_tree[j] || (first != body && second != body)) continue;
-      const int other = first == body ? second : first;
-      if (seen[other]) continue;
-      seen[other] = true;
-      model.parent_joint[other] = j;
-      model.path.row(other) = model.path.row(body);
-      model.path(other, j) = other == second ? 1 : -1;
-      model.body_order.push_back(other);
-    }
+  SpanningTree tree = spanning_tree(mechanism);
+  model.path = Eigen::MatrixXi::Zero(static_cast<Eigen::Index>(mechanism.bodies.size()),
+                                     static_cast<Eigen::Index>(mechanism.joints.size()));
+  for (int body : tree.body_order) {
+    const int joint = tree.parent_joint[body];
+    if (joint < 0) continue;
+    model.path.row(body) = model.path.row(parent_body(mechanism, tree, body));
+    model.path(body, joint) = body == mechanism.joints[joint].bodies[1] ? 1 : -1;
   }
-  for (int b = 0; b < bodies; ++b)
-    if (!seen[b])
-      throw std::invalid_argument(
-          fmt::format("compile: body \"{}\" is not connected to the base", mechanism.bodies[b]));
+  model.parent_joint = std::move(tree.parent_joint);
+  model.body_order = std::move(tree.body_order);
+  model.loop_joints = std::move(tree.loop_joints);
   model.platform_path = path_to(model, mechanism.platform);
-  for (int j = 0; j < joints; ++j)
-    if (!in_tree[j]) {
-      model.loop_joints.push_back(j);
-      model.loops.push_back(loop_of(model, j));
-    }
+  for (int joint : model.loop_joints) model.loops.push_back(loop_of(model, joint));
 }
 
 /// The centre and spread of the joint points. A prismatic joint's point is only
@@ -231,11 +147,11 @@ Model compile(const Mechanism& mechanism) {
   model.mechanism = mechanism;
   for (int j = 0; j < static_cast<int>(mechanism.joints.size()); ++j) {
     model.first_freedom.push_back(static_cast<int>(model.freedoms.size()));
-    const std::vector<Screw> screws = joint_screws(mechanism.joints[j]);
-    for (int i = 0; i < static_cast<int>(screws.size()); ++i)
-      model.freedoms.push_back({j, i, screws[i], screws[i].head<3>().isZero()});
-    for (int driven : mechanism.joints[j].driven)
-      model.drives.push_back(model.first_freedom.back() + driven);
+    const Joint& joint = mechanism.joints[j];
+    for (const ElementaryMotion& motion : elementary_motions(joint))
+      model.freedoms.push_back({j, static_cast<int>(model.freedoms.size()) - model.first_freedom[j],
+                                screw_of(motion, joint.at), motion.translation});
+    for (int driven : joint.driven) model.drives.push_back(model.first_freedom.back() + driven);
   }
   build_tree(model);
   measure(model);
@@ -278,7 +194,8 @@ Eigen::MatrixXd freedom_screws(const Model& model, const Posture& posture) {
     const Transform& carrier = posture.bodies[joint.bodies[0]];
     if (joint.type == JointType::spherical) {
       const Vector3 centre = carrier * joint.at;
-      for (int i = 0; i < 3; ++i) screws.col(first + i) = rotation_screw(Vector3::Unit(i), centre);
+      for (int i = 0; i < 3; ++i)
+        screws.col(first + i) = screw_of({false, Vector3::Unit(i), 0}, centre);
       continue;
     }
     Transform motion = carrier;

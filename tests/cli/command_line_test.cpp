@@ -159,6 +159,65 @@ TEST(ExportCommand, AnUnknownFormatIsAnsweredWithTheKnownOnes) {
                  "did you mean mechanism?");
 }
 
+TEST(ExportCommand, MjcfIsPrintedAsXmlOrWrappedInJson) {
+  const ProgramResult xml = run_polyglide({"export", "four-bar", "--as", "mjcf"});
+  EXPECT_EQ(xml.status, 0) << xml.err;
+  EXPECT_TRUE(has(xml.out, "<mujoco model=\"four-bar\">"));
+  const ProgramResult wrapped = run_polyglide({"export", "four-bar", "--as", "mjcf", "--json"});
+  EXPECT_EQ(json::parse(wrapped.out), (json{{"mjcf", xml.out}}));
+}
+
+TEST(ExportCommand, SeveralMachinesFitIntoJsonButNotIntoOneXmlText) {
+  const ProgramResult dut =
+      run_polyglide({"export", "four-bar", "bennett", "--as", "mjcf", "--json"});
+  EXPECT_EQ(dut.status, 0) << dut.err;
+  ASSERT_EQ(json::parse(dut.out).size(), 2u);
+  EXPECT_TRUE(has(json::parse(dut.out)[1].at("mjcf"), "bennett"));
+  expect_refused(run_polyglide({"export", "four-bar", "bennett", "--as", "mjcf"}),
+                 "one machine at a time");
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "two.xml").string();
+  expect_refused(run_polyglide({"export", "four-bar", "bennett", "--as", "mjcf", "-o", file}),
+                 "one machine at a time");
+  EXPECT_FALSE(std::ifstream(file));
+}
+
+TEST(ExportCommand, UrdfGoesIntoAFileWithItsLoopsBesideIt) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "robot.urdf").string();
+  const ProgramResult dut = run_polyglide({"export", "delta-1", "--as", "urdf", "-o", file});
+  EXPECT_EQ(dut.status, 0) << dut.err;
+  EXPECT_EQ(dut.out, "");
+  EXPECT_TRUE(has(dut.err, "robot.yaml"));
+  const auto text = [](const std::string& path) {
+    std::ifstream stream(path);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const std::string yaml = (folder.path() / "robot.yaml").string();
+  const json wrapped =
+      json::parse(run_polyglide({"export", "delta-1", "--as", "urdf", "--json"}).out);
+  EXPECT_EQ(wrapped, (json{{"urdf", text(file)}, {"yaml", text(yaml)}}));
+  EXPECT_TRUE(has(text(yaml), "name_mot: ['leg1.guide', 'leg2.guide', 'leg3.guide']"));
+  EXPECT_EQ(
+      json::parse(run_polyglide({"export", "delta-1", "--as", "urdf", "-o", file, "--json"}).out),
+      (json{{"written", file}, {"beside", yaml}}));
+}
+
+TEST(ExportCommand, UrdfOnStandardOutputSaysThatTheLoopsAreMissing) {
+  const ProgramResult dut = run_polyglide({"export", "delta-1", "--as", "urdf"});
+  EXPECT_EQ(dut.status, 0);
+  EXPECT_TRUE(has(dut.out, "<robot name=\"delta-1\">"));
+  EXPECT_TRUE(has(dut.err, "with -o FILE the closed loops"));
+  EXPECT_EQ(run_polyglide({"export", "delta-1", "--as", "urdf", "--quiet"}).err, "");
+}
+
+TEST(ExportCommand, ThePlaceOfTheLoopsIsNotGivenToTheTree) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "robot.yaml").string();
+  expect_refused(run_polyglide({"export", "delta-1", "--as", "urdf", "-o", file}), ".yaml");
+  EXPECT_FALSE(std::ifstream(file));
+}
+
 TEST(BadFile, IsRefusedWithItsNameAndStatusOne) {
   const TemporaryFolder folder;
   const auto refuse = [&](const std::string& text, const std::string& message) {
