@@ -1,48 +1,103 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "cli/commands.hpp"
 #include "cli/machines.hpp"
 #include "cli/print.hpp"
 #include "kinematics/mobility.hpp"
+#include "kinematics/screw_words.hpp"
 
 namespace polyglide {
 namespace {
 
-void print_page(const MobilityReport& report, const Mechanism& mechanism) {
-  const auto plural = [](int count) { return count == 1 ? "" : "s"; };
-  std::cout << fmt::format("{}: {}\n", mechanism.name, to_string(report.verdict));
-  for (const std::string& reason : report.reasons) std::cout << "  " << reason << "\n";
-  std::cout << columns({
-      {"", "", ""},
+const char* plural(int count) { return count == 1 ? "" : "s"; }
+
+/// The counts, each with what it means.
+void print_counts(const MobilityReport& report) {
+  std::vector<std::vector<std::string>> rows{
       {"  mobility", fmt::format("{}", report.finite),
        fmt::format("finite; {} at home; Kutzbach {}; {} redundant constraint{}", report.home,
                    report.kutzbach, report.redundant_constraints,
                    plural(report.redundant_constraints))},
       {"  platform", report.pattern,
-       fmt::format("{} freedom{} ({}); {} at home", report.platform_dof,
+       fmt::format("{} freedom{} ({}); {} at home; {}", report.platform_dof,
                    plural(report.platform_dof), report.axes.empty() ? "none" : report.axes,
-                   report.platform_home_dof)},
+                   report.platform_home_dof, report.motion)},
       {"  drives", fmt::format("{}", report.drives),
        fmt::format("held, the platform keeps {} freedom{}, {} at home; {} surplus",
                    report.locked_platform, plural(report.locked_platform),
                    report.home_locked_platform, report.surplus)},
       {"  certainty", fmt::format("{:.1e}", report.rank_gap),
        fmt::format("smallest gap of a rank decision; margin to singularity {:.2g}", report.margin)},
-  });
-  if (report.idle > 0)
-    std::cout << fmt::format("  idle        {} freedom{} that move no platform point: {}\n",
-                             report.idle, plural(report.idle), fmt::join(report.idle_rods, ", "));
-  if (report.branches.size() > 1) {
-    std::cout << "  branches through home:";
+  };
+  const CountingTerms& terms = report.counting;
+  rows.push_back({"  counting", fmt::format("{}", terms.mobility),
+                  fmt::format("= d(n − g − 1) + Σf + υ − ζ = {}({} − {} − 1) + {} + {} − {}",
+                              terms.order, terms.links, terms.joints, terms.freedoms,
+                              terms.virtual_constraints, terms.local)});
+  std::cout << '\n' << columns(rows);
+}
+
+void print_list(const char* title, const std::vector<std::string>& items) {
+  if (items.empty()) return;
+  std::cout << "\n  " << title << "\n";
+  for (const std::string& item : items) std::cout << "    " << item << "\n";
+}
+
+/// Bodies with their share of the fastest one's speed.
+std::string bodies_text(const FreedomMode& mode, const Mechanism& mechanism) {
+  constexpr std::size_t kShown = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, mode.bodies.size()); ++i)
+    text += fmt::format("{}{} {:.0f} %", i > 0 ? ", " : "", mechanism.bodies[mode.bodies[i].body],
+                        100 * mode.bodies[i].speed);
+  if (mode.bodies.size() > kShown) text += fmt::format(" and {} more", mode.bodies.size() - kShown);
+  return text;
+}
+
+std::string wrenches_text(const std::vector<Screw>& wrenches) {
+  std::string text;
+  for (const Screw& wrench : wrenches) text += (text.empty() ? "" : "; ") + describe_wrench(wrench);
+  return text.empty() ? "none" : text;
+}
+
+void print_evidence(const MobilityReport& report, const Mechanism& mechanism) {
+  std::vector<std::string> items;
+  for (const FreedomMode& mode : report.modes)
+    items.push_back(mode.about + " (moving: " + bodies_text(mode, mechanism) + ")");
+  print_list("Freedoms that are left", items);
+  items.clear();
+  if (report.branches.size() > 1)
     for (const auto& branch : report.branches)
-      std::cout << fmt::format(" {} ({} freedom{})", branch.pattern, branch.dimension,
-                               plural(branch.dimension));
-    std::cout << "\n";
-  }
-  for (const FreedomMode& mode : report.modes) std::cout << "  freedom left " << mode.about << "\n";
+      items.push_back(fmt::format("{} ({} freedom{})", branch.pattern, branch.dimension,
+                                  plural(branch.dimension)));
+  print_list("Motion branches that meet at home", items);
+  items.clear();
+  for (const PlatformMotion& motion : report.platform_motions) items.push_back(motion.about);
+  print_list("What the platform can do at home", items);
+  items.clear();
+  for (const IdleFreedom& idle : report.idle_freedoms) items.push_back(idle.about);
+  print_list("Idle freedoms, which move no point of the platform", items);
+  items.clear();
+  for (const RedundantConstraint& constraint : report.redundant) items.push_back(constraint.about);
+  print_list("Redundant constraints", items);
+  if (report.limbs.empty()) return;
+  std::cout << "\n  What each limb bears\n";
+  std::vector<std::vector<std::string>> rows;
+  for (const LimbWrenches& limb : report.limbs)
+    rows.push_back({"    " + limb.name, wrenches_text(limb.constraints),
+                    "driven: " + wrenches_text(limb.actuations)});
+  std::cout << columns(rows);
+}
+
+void print_page(const MobilityReport& report, const Mechanism& mechanism) {
+  std::cout << fmt::format("{}: {}\n", mechanism.name, to_string(report.verdict));
+  for (const std::string& reason : report.reasons) std::cout << "  " << reason << "\n";
+  print_counts(report);
+  print_evidence(report, mechanism);
 }
 
 }  // namespace

@@ -205,6 +205,31 @@ void count_terms(const Findings& findings, MobilityReport& report) {
 
 }  // namespace
 
+std::string describe_motion(const MobilityReport& report) {
+  const TaskSpace& task = report.task;
+  std::string words;
+  if (report.platform_dof == 0) return "none";
+  if (report.platform_dof == 6) return "all six freedoms";
+  if (task.rotations == 0)
+    words = "translation: the platform never turns";
+  else if (task.rotations == 1 && !task.rotation_axis.isZero())
+    words = fmt::format("{}: it turns about axes of the one direction ({:.3g}, {:.3g}, {:.3g})",
+                        task.translations == 3   ? "Schoenflies motion"
+                        : task.translations == 0 ? "rotation"
+                                                 : "rotation axes stay parallel",
+                        task.rotation_axis.x(), task.rotation_axis.y(), task.rotation_axis.z());
+  else
+    words = "rotation axes change direction as it moves (not Schoenflies)";
+  std::vector<std::string> along;
+  for (const ParasiticMotion& motion : report.parasitic)
+    along.push_back(fmt::format("{} {:.3g} {}", "XYZABC"[motion.axis],
+                                motion.amount * (motion.axis < 3 ? 1e3 : 180 / EIGEN_PI),
+                                motion.axis < 3 ? "mm" : "deg"));
+  if (!along.empty())
+    words += fmt::format("; moves along with it, seen: {}", fmt::join(along, ", "));
+  return words;
+}
+
 void collect_evidence(const Findings& findings, MobilityReport& report) {
   add_modes(findings, report);
   add_platform_motions(findings, report);

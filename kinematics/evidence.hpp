@@ -19,4 +19,8 @@ struct Findings {
 /// terms of the counting formula.
 void collect_evidence(const Findings& findings, MobilityReport& report);
 
+/// The kind of motion in words: whether rotation axes keep their direction (Schoenflies), whether
+/// other coordinates move along (parasitic motion).
+[[nodiscard]] std::string describe_motion(const MobilityReport& report);
+
 }  // namespace polyglide

@@ -7,6 +7,7 @@
 #include "kinematics/branches.hpp"
 #include "kinematics/evidence.hpp"
 #include "kinematics/manifold.hpp"
+#include "kinematics/solve.hpp"
 
 namespace polyglide {
 namespace {
@@ -168,9 +169,8 @@ void Analysis::describe_task() {
     const Transform& body = far[i].posture.bodies[platform];
     const Eigen::AngleAxisd turn(body.linear());
     turns.col(static_cast<Eigen::Index>(i)) = turn.angle() * turn.axis();
-    const Vector3 way = body * model_.mechanism.tool - model_.mechanism.tool;
-    Screw moved;
-    moved << way / model_.size, turns.col(static_cast<Eigen::Index>(i));
+    Screw moved = coordinates_of(platform_pose(model_, body));
+    moved.head<3>() /= model_.size;
     stray = stray.cwiseMax(moved.cwiseAbs());
   }
   for (int axis : task.axes) stray[axis] = 0;
@@ -186,6 +186,8 @@ void Analysis::describe_task() {
   int largest = 0;
   task.rotation_axis.cwiseAbs().maxCoeff(&largest);
   if (task.rotation_axis[largest] < 0) task.rotation_axis = -task.rotation_axis;
+  for (double& part : task.rotation_axis)
+    if (std::abs(part) < 1e-12) part = 0;
 }
 
 /// Whether the platform can move finitely from home although all drives are held.
@@ -272,6 +274,7 @@ void Analysis::decide() {
 }
 
 void Analysis::collect() {
+  report_.motion = describe_motion(report_);
   if (!options_.evidence) return;
   Findings findings{model_, home_, home_free_, home_locked_, nullptr, nullptr, nullptr};
   if (main_) {

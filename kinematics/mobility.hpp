@@ -89,6 +89,7 @@ struct MobilityReport {
   TaskSpace task;
   std::string pattern;  ///< "3T1R"
   std::string axes;     ///< "XYZA"
+  std::string motion;   ///< kind of motion in words: "Schoenflies motion: …", "translation", …
 
   int drives = 0, locked_mobility = 0, locked_platform = 0, home_locked_platform = 0, surplus = 0;
   double rank_gap = 0, margin = 0;

@@ -29,11 +29,12 @@ Json modes_json(const MobilityReport& report, const Mechanism& mechanism) {
   return list;
 }
 
-Json limbs_json(const MobilityReport& report) {
+Json limbs_json(const MobilityReport& report, const Mechanism& mechanism) {
   Json list = Json::array();
   for (const LimbWrenches& limb : report.limbs)
     list.push_back({{"name", limb.name},
                     {"joints", limb.joints},
+                    {"between", {mechanism.bodies[limb.from], mechanism.bodies[limb.to]}},
                     {"connectivity", limb.connectivity},
                     {"constraints", wrenches_json(limb.constraints)},
                     {"actuations", wrenches_json(limb.actuations)}});
@@ -66,7 +67,7 @@ void add_evidence(Json& json, const MobilityReport& report, const Mechanism& mec
     json["idle_freedoms"].push_back(
         {{"about", idle.about}, {"bodies", idle.bodies}, {"twist", numbers(idle.twist)}});
   json["redundant"] = redundant_json(report);
-  json["limbs"] = limbs_json(report);
+  json["limbs"] = limbs_json(report, mechanism);
   const CountingTerms& terms = report.counting;
   json["counting"] = {{"d", terms.order},
                       {"n", terms.links},
@@ -100,6 +101,7 @@ Json to_json(const MobilityReport& report, const Mechanism& mechanism) {
                     {"surplus", report.surplus}};
   json["rank_gap"] = report.rank_gap;
   json["margin"] = report.margin;
+  json["platform"]["motion"] = report.motion;
   json["closure"] = {{"residual", report.residual}, {"noise", report.noise}};
   json["second_order_conditions"] = report.obstructions;
   json["rotation_axis"] = report.task.rotation_axis.isZero()
