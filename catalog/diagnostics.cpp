@@ -65,7 +65,9 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   for (const std::string& candidate : words) {
     if (candidate.size() > kLongestWord) continue;
     const std::size_t distance = edit_distance(wanted, lower_case(candidate));
-    if (3 * distance <= std::max(word.size(), candidate.size()) && distance < smallest) {
+    const bool nearer =
+        distance < smallest || (distance == smallest && candidate.size() > nearest.size());
+    if (3 * distance <= std::max(word.size(), candidate.size()) && nearer) {
       smallest = distance;
       nearest = candidate;
     }

@@ -34,7 +34,9 @@ class InputError : public std::runtime_error {
 };
 
 /// The word of `words` nearest to `word` by edit distance, or "" when none is
-/// near enough to be what was meant (more than a third of the letters differ).
+/// near enough to be what was meant (more than a third of the letters differ). Of
+/// words equally near the longest, which keeps most of what was typed: "delta1" means
+/// "delta-1" rather than "delta".
 [[nodiscard]] std::string nearest_word(std::string_view word,
                                        const std::vector<std::string>& words);
 

@@ -90,6 +90,26 @@ double carriage_position(const Vector3& start, const Vector3& direction, const V
   return -along + (near ? -1 : 1) * std::sqrt(rest);
 }
 
+/// The rod or rods that hang on a carriage or an arm at `from` (their common
+/// middle), with the compass's rod set.
+void append_rods(Copy& copy, const json& rods, const std::string& carrier, const Vector3& from,
+                 const Vector3& to) {
+  const Reader& reader = copy.reader;
+  const auto append_rod = [&](const std::string& suffix, const Vector3& aside) {
+    const std::string body = copy.name + ".rod" + suffix;
+    append_end(copy, "top" + suffix, member(rods, "carriage"), from + aside, true, carrier, body);
+    append_end(copy, "bottom" + suffix, member(rods, "platform"), to + aside, false, body,
+               copy.between[1]);
+  };
+  if (text(member(rods, "form")) != "parallelogram") return append_rod("", Vector3::Zero());
+  static const json kTangential = "tangential";
+  const json& along = member(rods, "along");
+  const Vector3 aside = reader.positive_length(member(rods, "spacing")) / 2 *
+                        reader.direction(along.is_null() ? kTangential : along, copy.compass);
+  append_rod("_a", -aside);
+  append_rod("_b", aside);
+}
+
 void expand_guide(Copy& copy, const json& limb) {
   const Reader& reader = copy.reader;
   const json& guide = member(limb, "guide");
@@ -124,18 +144,7 @@ void expand_guide(Copy& copy, const json& limb) {
     slide.range = {{-limit, limit}};
   }
 
-  const auto append_rod = [&](const std::string& suffix, const Vector3& aside) {
-    const std::string body = copy.name + ".rod" + suffix;
-    append_end(copy, "top" + suffix, top, carriage + to_rod + aside, true, slider, body);
-    append_end(copy, "bottom" + suffix, bottom, platform + aside, false, body, copy.between[1]);
-  };
-  if (text(member(rods, "form")) != "parallelogram") return append_rod("", Vector3::Zero());
-  static const json kTangential = "tangential";
-  const json& along = member(rods, "along");
-  const Vector3 aside = reader.positive_length(member(rods, "spacing")) / 2 *
-                        reader.direction(along.is_null() ? kTangential : along, copy.compass);
-  append_rod("_a", -aside);
-  append_rod("_b", aside);
+  append_rods(copy, rods, slider, carriage + to_rod, platform);
 }
 
 void expand_strut(Copy& copy, const json& strut) {
@@ -177,6 +186,79 @@ void expand_chain(Copy& copy, const json& chain) {
     draft.bodies = {link(i), link(i + 1)};
     copy.joints.push_back(std::move(draft));
   }
+}
+
+/// Where an arm of length `arm` about `axis` through `centre` ends so that its
+/// rod reaches `end`: of the two places the one further out along the limb's
+/// radial direction (the higher one where they are equally far), or the other one
+/// with `near`. NaN, and told, when arm and rod do not reach.
+Vector3 arm_end(const Vector3& centre, const Vector3& axis, double arm, const Vector3& end,
+                double rod, bool near, const json& rods, const Copy& copy) {
+  const Vector3 gap = end - centre;
+  const Vector3 across = gap - axis.dot(gap) * axis;
+  const double apart = across.norm();
+  // |gap − arm e| = rod for a unit vector e across the axis: across · e = reach.
+  const double reach = (arm * arm + gap.squaredNorm() - rod * rod) / (2 * arm);
+  if (!(std::abs(reach) <= apart)) {
+    if (std::isfinite(reach)) {
+      const Units& units = copy.reader.units();
+      copy.reader.problems().add(
+          rods.is_object() && rods.contains("length") ? rods["length"] : rods,
+          fmt::format("loop does not close at home: arm of {:.6g} {} and rod of {:.6g} {} cannot "
+                      "span the {:.6g} {} from the crank to the platform joint",
+                      arm / units.metres, units.length, rod / units.metres, units.length,
+                      gap.norm() / units.metres, units.length));
+    }
+    return Vector3::Constant(kNaN);
+  }
+  const Vector3 toward = across / apart, aside = axis.cross(toward);
+  const double cosine = reach / apart, sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  const double outward = aside.dot(copy.compass.rotation.col(0));
+  const double rank = std::abs(outward) > 1e-9 ? outward : aside.z();
+  const double side = (rank < 0) != near ? -1 : 1;
+  return centre + arm * (cosine * toward + side * sine * aside);
+}
+
+void expand_crank(Copy& copy, const json& limb) {
+  const Reader& reader = copy.reader;
+  const json& crank = member(limb, "crank");
+  const json& rods = member(limb, "rods");
+  static const json kTangential = "tangential";
+  const json& word = member(crank, "axis");
+  const Vector3 axis = reader.direction(word.is_null() ? kTangential : word, copy.compass);
+  const Vector3 centre = reader.point(member(crank, "at"), copy.compass);
+  const Vector3 to_rod = reader.offset(member(member(rods, "carriage"), "at"), copy.compass);
+  const Vector3 platform = reader.point(member(member(rods, "platform"), "at"), copy.compass);
+  const double arm = reader.positive_length(member(crank, "length"));
+  const double rod = reader.positive_length(member(rods, "length"));
+  const Vector3 elbow = arm_end(centre, axis, arm, platform - to_rod, rod,
+                                text(member(crank, "side")) == "near", rods, copy);
+  copy.compass.rod = (platform - elbow - to_rod).normalized();
+
+  const std::string body = copy.name + ".arm";
+  Joint& turn = copy.append("crank", JointType::revolute, centre, crank, copy.between[0], body);
+  turn.axes[0] = axis;
+  if (member(crank, "drive") != false) turn.driven = {0};
+  if (const json& range = member(crank, "range"); !range.is_null())
+    turn.range = {reader.interval(range, reader.units().radians)};
+  append_rods(copy, rods, body, elbow + to_rod, platform);
+}
+
+/// A body's name with the values of copy variables put in: "arm{k}" is "arm2" where k = 2.
+std::string with_values(const std::string& name, const Scope& scope) {
+  std::string result;
+  for (std::size_t i = 0; i < name.size();) {
+    const std::size_t close = name[i] == '{' ? name.find('}', i) : std::string::npos;
+    const double* value =
+        close == std::string::npos ? nullptr : scope.find(name.substr(i + 1, close - i - 1));
+    if (value == nullptr) {
+      result += name[i++];
+      continue;
+    }
+    result += fmt::format("{:g}", *value);
+    i = close + 1;
+  }
+  return result;
 }
 
 /// Turn about base z, without the rounding noise of cos 90°: tidy drawings.
@@ -228,13 +310,14 @@ void expand_limb(const json& limb, Scope& scope, const Units& units, Problems& p
     Copy copy{reader, {}, name, base_and_platform, joints};
     const json& between = member(limb, "between");
     if (between.is_array() && between.size() == 2)
-      copy.between = {text(between[0]), text(between[1])};
+      copy.between = {with_values(text(between[0]), scope), with_values(text(between[1]), scope)};
     const json& turn = member(limb, "turn");
     const double angle = turn.is_null() ? 0 : reader.angle(turn);
     copy.compass.origin = reader.offset(member(limb, "origin"), Compass{});
     copy.compass.rotation = turned(angle);
 
     if (limb.contains("guide")) expand_guide(copy, limb);
+    if (limb.contains("crank")) expand_crank(copy, limb);
     if (limb.contains("strut")) expand_strut(copy, limb["strut"]);
     if (limb.contains("chain")) expand_chain(copy, limb["chain"]);
   });

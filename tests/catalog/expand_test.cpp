@@ -215,6 +215,83 @@ TEST(Expand, FindsTheRodForAConeWithoutAxis) {
   expect_near(strut.joints[0].cone_axis, -Vector3::UnitZ());
 }
 
+/// An arm of 250 mm about y at (200, 0, 600) and a rod to (50, 0, 0).
+nlohmann::json one_arm() {
+  return nlohmann::json::parse(R"({"format": "polyglide/layout/1", "name": "arm",
+    "parameters": {"rod": {"value": 600, "min": 100, "max": 900, "unit": "length", "about": "rod"}},
+    "limbs": [{"name": "leg", "crank": {"at": [200, 0, 600], "length": 250, "range": [-30, 60]},
+      "rods": {"form": "parallelogram", "spacing": 80, "length": "rod",
+               "carriage": {"joint": "universal"}, "platform": {"joint": "spherical", "at": [50, 0, 0]}}}]})");
+}
+
+/// The middle between the two rods' ends at the arm.
+Vector3 elbow(const Mechanism& machine) {
+  return (joint(machine, "leg.top_a").at + joint(machine, "leg.top_b").at) / 2;
+}
+
+TEST(Expand, TurnsAnArmSoThatItsRodsHaveTheirLength) {
+  const Mechanism machine = expand(parse_layout(one_arm(), "f"));
+  const Joint& crank = joint(machine, "leg.crank");
+  EXPECT_EQ(machine.bodies[crank.bodies[1]], "leg.arm");
+  EXPECT_EQ(crank.driven, std::vector<int>{0});
+  expect_near(crank.axes[0], Vector3::UnitY());
+  EXPECT_NEAR(crank.range[0].min, -std::numbers::pi / 6, 1e-15);
+  EXPECT_NEAR(crank.range[0].max, std::numbers::pi / 3, 1e-15);
+  EXPECT_NEAR((elbow(machine) - Vector3(0.2, 0, 0.6)).norm(), 0.25, 1e-12);
+  for (const char* rod : {"a", "b"})
+    EXPECT_NEAR((joint(machine, std::string("leg.top_") + rod).at -
+                 joint(machine, std::string("leg.bottom_") + rod).at)
+                    .norm(),
+                0.6, 1e-12);
+  EXPECT_NEAR(elbow(machine).y(), 0, 1e-15);
+}
+
+TEST(Expand, PutsTheArmsEndFurtherOutOrNearer) {
+  nlohmann::json document = one_arm();
+  const Vector3 far = elbow(expand(parse_layout(document, "f")));
+  document["limbs"][0]["crank"]["side"] = "near";
+  const Vector3 near = elbow(expand(parse_layout(document, "f")));
+  EXPECT_GT(far.x(), near.x());
+  EXPECT_NEAR((near - Vector3(0.05, 0, 0)).norm(), (far - Vector3(0.05, 0, 0)).norm(), 1e-12);
+  // Turned by 90°, radially outwards is along y.
+  document["limbs"][0]["turn"] = 90;
+  document["limbs"][0]["crank"].erase("side");
+  expect_near(elbow(expand(parse_layout(document, "f"))), {0, far.x(), far.z()});
+}
+
+TEST(Expand, StretchesArmAndRodJustToTheirReachAndNoFurther) {
+  const double apart = std::hypot(150, 600);
+  const Layout layout = parse_layout(one_arm(), "f");
+  const Vector3 end = elbow(expand(layout, {{"rod", apart - 250 + 1e-9}}));
+  expect_near(end, Vector3(0.2, 0, 0.6) + 0.25 * Vector3(-150, 0, -600).normalized(), 1e-5);
+  try {
+    static_cast<void>(expand(layout, {{"rod", apart - 250 - 1e-3}}));
+    FAIL() << "an arm that does not reach was accepted";
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    for (const char* part :
+         {"/limbs/0/rods/length", "does not close", "arm of 250 mm", "618.466 mm"})
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+}
+
+TEST(Expand, PutsValuesOfCopyVariablesIntoBodyNames) {
+  nlohmann::json document = one_arm();
+  document["limbs"][0]["copies"] = {{"k", {0, 90}}};
+  document["limbs"][0]["turn"] = "k";
+  document["limbs"][0]["between"] = {"base", "bar{k}"};
+  document["limbs"].push_back(nlohmann::json::parse(
+      R"({"name": "hinge", "copies": {"k": [90, 0]}, "between": ["bar{k}", "platform"],
+          "chain": [{"type": "revolute", "at": [0, 0, 0], "axis": "z"}]})"));
+  const Mechanism machine = expand(parse_layout(document, "f"));
+  EXPECT_EQ(machine.bodies[joint(machine, "leg1.bottom_a").bodies[1]], "bar0");
+  EXPECT_EQ(machine.bodies[joint(machine, "leg2.bottom_a").bodies[1]], "bar90");
+  EXPECT_EQ(machine.bodies[joint(machine, "hinge1.joint1").bodies[0]], "bar90");
+  // A name in braces that is no variable stays as it is.
+  document["limbs"][1]["between"] = {"bar{q}", "platform"};
+  EXPECT_THROW(static_cast<void>(parse_layout(document, "f")), InputError);
+}
+
 TEST(Layout, KeepsItsParametersInTheOrderOfTheFile) {
   const Layout delta = find_layout("delta-1");
   std::string names;
