@@ -111,13 +111,13 @@ Measured Analysis::measure(const Branch& branch) {
   for (const auto& [posture, there] : branch.far) {
     if (there.rank.smallest < kNearSingular * best) continue;  // counts waver there
     Freedoms free = there;
-    Freedoms locked = hold_drives(model_, free);
     if (branch.excess > 0) {
       free.kernel = branch.near_kernel * branch.span;
       free.platform = platform_motion(model_, posture, free.kernel);
       free.platform_rank = rank_of(free.platform, 1);
       free.mobility = static_cast<int>(free.kernel.cols());
     }
+    Freedoms locked = hold_drives(model_, free);
     note(free);
     note(locked);
     // Fewest freedoms are generic; among equals the posture farthest from singular.
