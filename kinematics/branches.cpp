@@ -14,8 +14,7 @@ constexpr double kCrossed = 0.4;       // of a long step
 constexpr double kTurned = 0.6;        // sine of the angle a tangent space turns on a long step
 constexpr double kNearSingular = 0.1;  // of the smallest singular value one step before
 constexpr double kSameBranch = 0.35;   // sine of the angle between tangent spaces, 20 degrees
-constexpr double kExplained = 0.26;    // sine of the angle from a direction to a known branch
-constexpr int kMostFailures = 6;       // directions allowed by second order that lead nowhere
+constexpr std::size_t kTries = 3;      // members of a component of directions that are tried
 
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& basis) {
   return Eigen::HouseholderQR<Eigen::MatrixXd>(basis).householderQ() *
@@ -53,7 +52,7 @@ class Explorer {
   bool wander(Place& place, double length);
   bool leave_smoothly(const Eigen::MatrixXd& kernel);
   void leave_by_second_order(const Eigen::MatrixXd& kernel);
-  void meet(Posture posture);
+  void meet(const Place& near);
   bool is_shaky(Branch& branch, const Place& near);
   void walk_far(Branch& branch, const Place& near);
 
@@ -83,13 +82,24 @@ Eigen::MatrixXd Explorer::kernel_of(const Freedoms& free) const {
   return held_ ? hold_drives(model_, free).kernel : free.kernel;
 }
 
-/// The freedoms of a branch that continue, where fewer do than there are at every posture of it.
-void find_span(Branch& branch, const std::vector<Eigen::VectorXd>& directions) {
-  Eigen::MatrixXd all(branch.near_kernel.cols(), directions.size());
+Eigen::MatrixXd side_by_side(const std::vector<Eigen::VectorXd>& directions) {
+  Eigen::MatrixXd all(directions.front().size(), directions.size());
   for (std::size_t i = 0; i < directions.size(); ++i)
     all.col(static_cast<Eigen::Index>(i)) = directions[i];
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(all, Eigen::ComputeThinU);
-  const int rank = static_cast<int>((svd.singularValues().array() > 1e-3).count());
+  return all;
+}
+
+constexpr double kInSpan = 1e-3;  // of a unit direction: less is the softness of double zeros
+
+Eigen::Index span_of(const std::vector<Eigen::VectorXd>& directions) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(side_by_side(directions));
+  return (svd.singularValues().array() > kInSpan).count();
+}
+
+/// The freedoms of a branch that continue, where fewer do than there are at every posture of it.
+void find_span(Branch& branch, const std::vector<Eigen::VectorXd>& directions) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(side_by_side(directions), Eigen::ComputeThinU);
+  const int rank = static_cast<int>((svd.singularValues().array() > kInSpan).count());
   branch.excess = static_cast<int>(branch.near_kernel.cols()) - rank;
   if (branch.excess > 0) branch.span = svd.matrixU().leftCols(rank);
 }
@@ -123,7 +133,10 @@ bool Explorer::is_shaky(Branch& branch, const Place& near) {
   if (bend >= 0 && bend < kStraight) return false;
   const SecondOrder allowed =
       second_order(model_, near.posture, branch.near_kernel, active_, random_);
-  if (!allowed.directions.empty()) find_span(branch, allowed.directions);
+  std::vector<Eigen::VectorXd> directions;
+  for (const auto& component : allowed.components)
+    directions.insert(directions.end(), component.begin(), component.end());
+  if (!directions.empty()) find_span(branch, directions);
   if (branch.excess > 0) branch.far = {near};
   return branch.excess > 0;
 }
@@ -156,36 +169,35 @@ bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
   return false;
 }
 
-void Explorer::meet(Posture posture) {
-  Freedoms free = freedoms_at(model_, posture);
-  Branch branch{kernel_of(free), {}, {}, 0};
+void Explorer::meet(const Place& near) {
+  Branch branch{kernel_of(near.free), {}, {}, 0};
   const bool known = std::ranges::any_of(result_.branches, [&](const Branch& other) {
     return other.near_kernel.cols() == branch.near_kernel.cols() &&
            separation(other.near_kernel, branch.near_kernel) < kSameBranch;
   });
   if (known) return;
-  const Place near{std::move(posture), std::move(free)};
   if (!is_shaky(branch, near)) walk_far(branch, near);
   result_.branches.push_back(std::move(branch));
 }
 
+/// Every component of the second-order solution is tried along a few of its members, each way: a
+/// cusp, for example, can be left one way only.
 void Explorer::leave_by_second_order(const Eigen::MatrixXd& kernel) {
   const SecondOrder allowed = second_order(model_, home_, kernel, active_, random_);
   result_.obstructions = allowed.obstructions;
-  int failures = 0;
-  for (const Eigen::VectorXd& direction : allowed.directions)
-    for (const int side : {1, -1}) {
-      const Eigen::VectorXd rates = side * (kernel * direction);
-      const bool explained = std::ranges::any_of(result_.branches, [&](const Branch& branch) {
-        return separation(rates, branch.near_kernel) < kExplained;
-      });
-      if (explained || failures >= kMostFailures) continue;
-      Posture near = home_;
-      if (step(near, rates, kShort) < 0)
-        ++failures;
-      else
-        meet(std::move(near));
-    }
+  for (const auto& component : allowed.components) {
+    bool left = false;
+    for (std::size_t i = 0; i < std::min(kTries, component.size()) && !left; ++i)
+      for (const int side : {1, -1}) {
+        Posture near = home_;
+        if (left || step(near, side * (kernel * component[i]), kShort) < 0) continue;
+        const Freedoms free = freedoms_at(model_, near);
+        const Eigen::Index dimension = kernel_of(free).cols();
+        if (span_of(component) > dimension) result_.cone = true;
+        meet({std::move(near), free});
+        left = true;
+      }
+  }
 }
 
 Departure Explorer::leave(const Eigen::MatrixXd& kernel) {

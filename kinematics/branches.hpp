@@ -33,7 +33,8 @@ struct Departure {
   bool smooth = false;   ///< every instantaneous freedom continues: one branch
   int obstructions = 0;  ///< independent second-order conditions on the freedoms, when not smooth
   std::vector<Branch> branches;  ///< empty: it cannot move
-  double residual = 0;           ///< worst loop-closure error left at a posture reached
+  bool cone = false;    ///< the directions of one branch at home form a curved cone, not a plane
+  double residual = 0;  ///< worst loop-closure error left at a posture reached
 };
 
 /// Finds the motion branches through `home` by short pinned steps: along a random

@@ -42,6 +42,10 @@ class Analysis {
   [[nodiscard]] MobilityReport take() { return std::move(report_); }
 
  private:
+  /// Home is a constraint singularity through which more than one motion leads.
+  [[nodiscard]] bool branches_meet() const {
+    return report_.home > report_.finite && (branches_.size() > 1 || departure_.cone);
+  }
   [[nodiscard]] Measured measure(const Branch& branch);
   void note(const RankDecision& rank);
   void note(const Freedoms& freedoms);
@@ -194,8 +198,7 @@ void Analysis::describe_task() {
 /// Generic postures do not show it: equal parallel legs, for example, let go at
 /// home only.
 void Analysis::look_for_self_motion() {
-  const bool settled =
-      report_.locked_platform > 0 || (report_.home > report_.finite && branches_.size() > 1);
+  const bool settled = report_.locked_platform > 0 || branches_meet();
   if (report_.home_locked_platform == 0 || settled) return;
   const Departure held =
       leave(model_, home_, home_locked_.kernel, true, {1, options_.steps, 0.25}, random_);
@@ -231,13 +234,15 @@ void Analysis::decide() {
     reasons.push_back(
         "With all drives held at home the platform can still move: a finite self-motion passes "
         "through home, although generic postures are held.");
-  } else if (report_.home > report_.finite && (branches_.size() > 1)) {
+  } else if (branches_meet()) {
     report_.verdict = Verdict::uncertain;
+    const std::string ways = branches_.size() > 1
+                                 ? fmt::format("{} of which meet at home", branches_.size())
+                                 : std::string("whose directions form a cone there");
     reasons.push_back(
         fmt::format("Home is a constraint singularity: {} freedoms there, {} on the motion "
-                    "branches, {} of which meet at home; "
-                    "the drives do not decide which one is taken.",
-                    report_.home, report_.finite, branches_.size()));
+                    "branches, {}; the drives do not decide which way is taken.",
+                    report_.home, report_.finite, ways));
   } else if (report_.home_locked_platform > 0) {
     report_.verdict = Verdict::singular_home;
     reasons.push_back(

@@ -1,5 +1,7 @@
 #include "kinematics/second_order.hpp"
 
+#include <algorithm>
+
 #include "kinematics/manifold.hpp"
 #include "kinematics/rank.hpp"
 
@@ -98,6 +100,42 @@ bool solve(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd& start) {
   return false;
 }
 
+/// Projector on the directions in which all forms stay zero to first order.
+Eigen::MatrixXd tangent_projector(const std::vector<Eigen::MatrixXd>& forms,
+                                  const Eigen::VectorXd& at) {
+  Eigen::MatrixXd slopes(forms.size(), at.size());
+  for (std::size_t i = 0; i < forms.size(); ++i)
+    slopes.row(static_cast<Eigen::Index>(i)) = (forms[i] * at).transpose();
+  const Eigen::MatrixXd basis = kernel_of(slopes, 1).basis;
+  return basis * basis.transpose();
+}
+
+/// Whether the solutions `from` and `to` belong to one component, as far as a straight way shows.
+bool connected(const std::vector<Eigen::MatrixXd>& forms, const Eigen::VectorXd& from,
+               const Eigen::VectorXd& to) {
+  constexpr double kTurn = 0.3;  // of a projector between neighbours, Frobenius norm
+  const Eigen::MatrixXd start = tangent_projector(forms, from), end = tangent_projector(forms, to);
+  const bool flat = (start - end).norm() < 1e-3;  // one linear space
+  if (flat) return (to - start * to).norm() < 1e-3;
+  if (std::abs(start.trace() - end.trace()) > 0.5) return false;
+  const Eigen::VectorXd target = from.dot(to) < 0 ? Eigen::VectorXd(-to) : to;
+  for (const int steps : {8, 32}) {
+    Eigen::MatrixXd before = start;
+    bool through = true;
+    for (int i = 1; i <= steps && through; ++i) {
+      const double part = static_cast<double>(i) / steps;
+      Eigen::VectorXd at = (1 - part) * from + part * target;
+      through = solve(forms, at);
+      if (!through) break;
+      const Eigen::MatrixXd here = tangent_projector(forms, at);
+      through = (here - before).norm() < kTurn;
+      before = here;
+    }
+    if (through) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Eigen::VectorXd random_direction(std::mt19937_64& random, Eigen::Index size) {
@@ -114,8 +152,15 @@ SecondOrder second_order(const Model& model, const Posture& posture, const Eigen
   result.obstructions = static_cast<int>(forms.size());
   for (int i = 0; i < kStarts; ++i) {
     Eigen::VectorXd direction = random_direction(random, kernel.cols());
-    if (forms.empty() || solve(forms, direction))
-      result.directions.push_back(direction.normalized());
+    if (!forms.empty() && !solve(forms, direction)) continue;
+    direction.normalize();
+    const auto same = std::ranges::find_if(result.components, [&](const auto& component) {
+      return forms.empty() || connected(forms, component.front(), direction);
+    });
+    if (same == result.components.end())
+      result.components.push_back({std::move(direction)});
+    else
+      same->push_back(std::move(direction));
   }
   return result;
 }

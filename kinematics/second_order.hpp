@@ -9,8 +9,9 @@ namespace polyglide {
 /// What second order says about instantaneous freedoms at a posture.
 struct SecondOrder {
   int obstructions = 0;  ///< independent quadratic conditions on the freedoms; 0 at a regular point
-  std::vector<Eigen::VectorXd> directions;  ///< unit vectors over the freedoms given that satisfy
-                                            ///< all conditions; empty: none continues
+  /// Unit vectors over the freedoms given that satisfy all conditions, by solution
+  /// component: one for each family of directions that turn into each other. Empty: none continues.
+  std::vector<std::vector<Eigen::VectorXd>> components;
 };
 
 /// Looks for instantaneous freedoms that continue to second order.
@@ -19,7 +20,9 @@ struct SecondOrder {
 /// Σ S_i q̈_i + Σ_{i<j} [S_i, S_j] q̇_i q̇_j = 0. They exist when the bracket sum vanishes on every
 /// wrench that the loops' screws cannot resist (the left kernel of the Jacobian), which
 /// gives as many quadratic forms in q̇. Their common zeros among the freedoms are found by
-/// Gauss-Newton from random starts: generic members of every solution component.
+/// Gauss-Newton from random starts: generic members of every solution component. Two belong to
+/// one component when a way within the solutions leads from one to the other and the tangent
+/// space turns with it, instead of jumping where components cross.
 /// @param kernel freedoms × k, scaled rates: the instantaneous freedoms
 /// @param active the freedoms that may accelerate (all, or the passive ones)
 /// Source: Kieffer 1994, Differential analysis of bifurcations and isolated singularities for

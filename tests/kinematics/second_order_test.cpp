@@ -87,19 +87,14 @@ Mechanism shaky_everywhere() {
 TEST(SecondOrder, ThreeHingesInLineCannotMove) {
   const SecondOrder found = look(three_hinges_in_line());
   EXPECT_EQ(found.obstructions, 1);
-  EXPECT_TRUE(found.directions.empty());
+  EXPECT_TRUE(found.components.empty());
 }
 
 TEST(SecondOrder, AFlatParallelogramHasTwoWaysOut) {
   const Mechanism mechanism = flat_parallelogram();
   const SecondOrder found = look(mechanism);
   EXPECT_EQ(found.obstructions, 1);
-  ASSERT_FALSE(found.directions.empty());
-  int other = 0;  // up to their sign, two directions
-  for (const Eigen::VectorXd& direction : found.directions)
-    if (std::abs(direction.dot(found.directions.front())) < 0.999) ++other;
-  EXPECT_GT(other, 0);
-  EXPECT_LT(other, static_cast<int>(found.directions.size()));
+  EXPECT_EQ(found.components.size(), 2u);
 }
 
 TEST(SecondOrder, SetsNoConditionAtARegularPosture) {
@@ -117,7 +112,7 @@ TEST(SecondOrder, OfAnImmobileMechanismIsEmpty) {
       Planar().hinge(0, 1, 0, 0).hinge(1, 2, 0.5, 0.5).hinge(2, 0, 1, 0).with_platform(1);
   const SecondOrder found = look(triangle);
   EXPECT_EQ(found.obstructions, 0);
-  EXPECT_TRUE(found.directions.empty());
+  EXPECT_TRUE(found.components.empty());
 }
 
 MobilityReport check(const Mechanism& mechanism) { return analyse_mobility(compile(mechanism)); }
