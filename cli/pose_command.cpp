@@ -5,6 +5,7 @@
 #include "cli/commands.hpp"
 #include "cli/machines.hpp"
 #include "cli/print.hpp"
+#include "cli/singularities.hpp"
 #include "kinematics/solve.hpp"
 
 namespace polyglide {
@@ -12,35 +13,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json pose_json(const Pose& pose) {
-  const auto& q = pose.rotation;
-  return {{"position", {pose.position.x(), pose.position.y(), pose.position.z()}},
-          {"quaternion", {q.w(), q.x(), q.y(), q.z()}}};
-}
-
-std::string pose_text(const Pose& pose) {
-  const auto c = coordinates_of(pose);
-  return fmt::format("{}, turned A {} B {} C {}", point_in_mm(pose.position), in_degrees(c[3]),
-                     in_degrees(c[4]), in_degrees(c[5]));
-}
-
 bool linear_drive(const Model& model, int drive) {
   return model.freedoms[model.drives[drive]].translational;
 }
 
 std::string drive_name(const Model& model, int drive) {
   return model.mechanism.joints[model.freedoms[model.drives[drive]].joint].name;
-}
-
-/// x,y,z[,a,b,c] in file units to task coordinates in m and rad.
-Eigen::Matrix<double, 6, 1> read_pose(const std::string& text, const Units& units) {
-  const std::vector<double> numbers = parse_numbers(text, "--ik");
-  if (numbers.size() != 3 && numbers.size() != 6)
-    throw InputError({wrong_argument(text, "--ik takes x,y,z or x,y,z,a,b,c")});
-  Eigen::Matrix<double, 6, 1> coordinates = Eigen::Matrix<double, 6, 1>::Zero();
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    coordinates[static_cast<Eigen::Index>(i)] = numbers[i] * (i < 3 ? units.metres : units.radians);
-  return coordinates;
 }
 
 Eigen::VectorXd read_drives(const std::string& text, const Model& model) {
@@ -57,10 +35,9 @@ Eigen::VectorXd read_drives(const std::string& text, const Model& model) {
   return drives;
 }
 
-ordered_json inverse(const Machine& machine, const std::string& text,
+ordered_json inverse(const Machine& machine, const Pose& pose,
                      const std::vector<std::string>& ignored, bool json) {
-  const InverseResult result =
-      solve_inverse(machine, pose_of(read_pose(text, machine.model.mechanism.units)), ignored);
+  const InverseResult result = solve_inverse(machine, pose, ignored);
   ordered_json document{{"name", machine.model.mechanism.name}, {"reachable", result.reachable}};
   document["drives"] = std::vector<double>(result.drives.begin(), result.drives.end());
   document["limit"] = result.limit.empty() ? ordered_json() : ordered_json(result.limit);
@@ -103,6 +80,7 @@ int run_pose(CommandLine& line) {
   MachineOptions options;
   std::string ik, fk;
   std::vector<std::string> ignored;
+  SingularityQuestions questions;
   bool all = false;
   add_machine_options(line.options(), options);
   auto* ik_option = line.options().add_option(
@@ -114,6 +92,14 @@ int run_pose(CommandLine& line) {
   line.options()
       .add_option("--ignore-limits", ignored, "Limits that do not count, separated by commas")
       ->delimiter(',');
+  line.options()
+      .add_option("--to", questions.to,
+                  "With --ik: singularities on the straight way to this pose, too")
+      ->needs(ik_option);
+  line.options()
+      .add_flag("--nearest-singularity", questions.nearest,
+                "With --ik: the nearest singular pose, too")
+      ->needs(ik_option);
   if (!line.parse()) return kDone;
   if (ik.empty() && fk.empty())
     throw InputError({wrong_argument("", "pose needs --ik x,y,z[,a,b,c] or --fk q1,q2,…")});
@@ -121,8 +107,13 @@ int run_pose(CommandLine& line) {
   std::vector<ordered_json> documents;
   for (const ChosenMachine& chosen : load_machines(options)) {
     const Machine machine = prepare(chosen.mechanism);
-    documents.push_back(ik.empty() ? forward(machine, fk, all, line.seed(), line.json())
-                                   : inverse(machine, ik, ignored, line.json()));
+    if (ik.empty()) {
+      documents.push_back(forward(machine, fk, all, line.seed(), line.json()));
+      continue;
+    }
+    const Pose pose = read_pose(ik, "--ik", chosen.mechanism.units);
+    documents.push_back(inverse(machine, pose, ignored, line.json()));
+    add_singularities(machine, pose, questions, line.seed(), line.json(), documents.back());
   }
   if (line.json()) print_json(one_or_all(std::move(documents)));
   return kDone;

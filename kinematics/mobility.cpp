@@ -42,10 +42,6 @@ class Analysis {
   [[nodiscard]] MobilityReport take() { return std::move(report_); }
 
  private:
-  /// Home is a constraint singularity through which more than one motion leads.
-  [[nodiscard]] bool branches_meet() const {
-    return report_.home > report_.finite && (branches_.size() > 1 || departure_.cone);
-  }
   [[nodiscard]] Measured measure(const Branch& branch);
   void note(const RankDecision& rank);
   void note(const Freedoms& freedoms);
@@ -155,6 +151,8 @@ void Analysis::choose_main_branch() {
   report_.locked_mobility = main_ ? main_->locked.mobility : 0;
   report_.locked_platform = main_ ? main_->locked.platform_rank.rank : 0;
   report_.surplus = report_.drives - (report_.finite - report_.locked_mobility);
+  report_.motions_meet =
+      report_.home > report_.finite && (branches_.size() > 1 || departure_.cone);
   describe_task();
 }
 
@@ -198,7 +196,7 @@ void Analysis::describe_task() {
 /// Generic postures do not show it: equal parallel legs, for example, let go at
 /// home only.
 void Analysis::look_for_self_motion() {
-  const bool settled = report_.locked_platform > 0 || branches_meet();
+  const bool settled = report_.locked_platform > 0 || report_.motions_meet;
   if (report_.home_locked_platform == 0 || settled) return;
   const Departure held =
       leave(model_, home_, home_locked_.kernel, true, {1, options_.steps, 0.25}, random_);
@@ -234,7 +232,7 @@ void Analysis::decide() {
     reasons.push_back(
         "With all drives held at home the platform can still move: a finite self-motion passes "
         "through home, although generic postures are held.");
-  } else if (branches_meet()) {
+  } else if (report_.motions_meet) {
     report_.verdict = Verdict::uncertain;
     const std::string ways = branches_.size() > 1
                                  ? fmt::format("{} of which meet at home", branches_.size())

@@ -103,6 +103,7 @@ struct MobilityReport {
     std::string pattern;
   };
   std::vector<Branch> branches;
+  bool motions_meet = false;  ///< home is a constraint singularity with several ways out
   std::vector<ParasiticMotion> parasitic;
 
   // Evidence

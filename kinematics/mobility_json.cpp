@@ -108,6 +108,7 @@ Json to_json(const MobilityReport& report, const Mechanism& mechanism) {
                               ? Json()
                               : Json({report.task.rotation_axis.x(), report.task.rotation_axis.y(),
                                       report.task.rotation_axis.z()});
+  json["motions_meet"] = report.motions_meet;
   json["branches"] = Json::array();
   for (const auto& branch : report.branches)
     json["branches"].push_back({{"dimension", branch.dimension}, {"pattern", branch.pattern}});

@@ -19,12 +19,9 @@ constexpr int kSceneNodes = 81;  // three places of each of four drives
 
 std::string uncertainty(const nlohmann::json& check) {
   const auto& drives = check.at("drives");
-  const auto& mobility = check.at("mobility");
   if (drives.at("locked_platform").get<int>() > 0)
     return "uncertain: with all drives held the platform still moves";
-  if (mobility.at("home").get<int>() > mobility.at("finite").get<int>() &&
-      check.at("branches").size() > 1)
-    return "uncertain: several motions meet at home";
+  if (check.at("motions_meet").get<bool>()) return "uncertain: several motions meet at home";
   return "uncertain: with all drives held at home a finite motion is left";
 }
 
