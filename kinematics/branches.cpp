@@ -16,18 +16,13 @@ constexpr double kNearSingular = 0.1;  // of the smallest singular value one ste
 constexpr double kSameBranch = 0.35;   // sine of the angle between tangent spaces, 20 degrees
 constexpr std::size_t kTries = 3;      // members of a component of directions that are tried
 
-Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& basis) {
-  return Eigen::HouseholderQR<Eigen::MatrixXd>(basis).householderQ() *
-         Eigen::MatrixXd::Identity(basis.rows(), basis.cols());
-}
-
 /// Sine of the largest angle from the smaller space to the larger.
 double separation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   const Eigen::MatrixXd small = orthonormal(a.cols() <= b.cols() ? a : b);
   const Eigen::MatrixXd large = orthonormal(a.cols() <= b.cols() ? b : a);
   if (small.cols() == 0) return 0;
   const Eigen::MatrixXd rest = small - large * (large.transpose() * small);
-  return Eigen::JacobiSVD<Eigen::MatrixXd>(rest).singularValues()[0];
+  return singular_values(rest)[0];
 }
 
 class Explorer {
@@ -92,16 +87,15 @@ Eigen::MatrixXd side_by_side(const std::vector<Eigen::VectorXd>& directions) {
 constexpr double kInSpan = 1e-3;  // of a unit direction: less is the softness of double zeros
 
 Eigen::Index span_of(const std::vector<Eigen::VectorXd>& directions) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(side_by_side(directions));
-  return (svd.singularValues().array() > kInSpan).count();
+  return (singular_values(side_by_side(directions)).array() > kInSpan).count();
 }
 
 /// The freedoms of a branch that continue, where fewer do than there are at every posture of it.
 void find_span(Branch& branch, const std::vector<Eigen::VectorXd>& directions) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(side_by_side(directions), Eigen::ComputeThinU);
-  const int rank = static_cast<int>((svd.singularValues().array() > kInSpan).count());
+  const Svd svd = svd_of(side_by_side(directions));
+  const int rank = static_cast<int>((svd.values.array() > kInSpan).count());
   branch.excess = static_cast<int>(branch.near_kernel.cols()) - rank;
-  if (branch.excess > 0) branch.span = svd.matrixU().leftCols(rank);
+  if (branch.excess > 0) branch.span = svd.u.leftCols(rank);
 }
 
 /// A step along a random freedom, shortened where the long one leaves what closes or may

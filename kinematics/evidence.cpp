@@ -92,10 +92,10 @@ std::vector<BodyMotion> body_motions(const Model& model, const Posture& at,
 void add_modes(const Findings& findings, const std::string& about, const Posture& at,
                const Freedoms& freedoms, const std::vector<int>& active, MobilityReport& report) {
   const Model& model = findings.model;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(freedoms.platform, Eigen::ComputeFullV);
+  const Svd svd = svd_of(freedoms.platform);
   for (int i = 0; i < freedoms.platform_rank.rank; ++i) {
     FreedomMode mode;
-    const Eigen::VectorXd rates = freedoms.kernel * svd.matrixV().col(i);
+    const Eigen::VectorXd rates = freedoms.kernel * svd.v.col(i);
     mode.bodies = body_motions(model, at, rates);
     for (const BodyMotion& motion : mode.bodies)
       if (motion.body == model.mechanism.platform) mode.twist = motion.twist;
@@ -131,9 +131,8 @@ void add_platform_motions(const Findings& findings, MobilityReport& report) {
 void add_idle_freedoms(const Findings& findings, MobilityReport& report) {
   if (!findings.free || report.idle <= 0) return;
   const Model& model = findings.model;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(findings.free->platform, Eigen::ComputeFullV);
-  const Eigen::MatrixXd idle =
-      sparse_basis(findings.free->kernel * svd.matrixV().rightCols(report.idle));
+  const Svd svd = svd_of(findings.free->platform);
+  const Eigen::MatrixXd idle = sparse_basis(findings.free->kernel * svd.v.rightCols(report.idle));
   std::set<int> seen;
   for (Eigen::Index c = 0; c < idle.cols(); ++c) {
     IdleFreedom freedom;

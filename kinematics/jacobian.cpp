@@ -20,13 +20,13 @@ std::optional<Eigen::MatrixXd> task_jacobian(const Machine& machine, const Postu
   }
   const Eigen::MatrixXd drives =
       (freedom_scale(model).asDiagonal() * freedoms.kernel)(model.drives, Eigen::all);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(task, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  if (decide_rank(svd.singularValues(), model.size).rank < axes) return std::nullopt;
-  return drives * svd.solve(Eigen::MatrixXd::Identity(axes, axes));
+  const Svd svd = svd_of(task);
+  if (decide_rank(svd.values, model.size).rank < axes) return std::nullopt;
+  return drives * svd.v.leftCols(axes) * svd.values.cwiseInverse().asDiagonal() * svd.u.transpose();
 }
 
 double condition_number(const Eigen::MatrixXd& jacobian) {
-  const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(jacobian).singularValues();
+  const Eigen::VectorXd s = singular_values(jacobian);
   const Eigen::Index last = s.size() - 1;
   if (last < 0 || !(s[last] > 0)) return std::numeric_limits<double>::infinity();
   return s[0] / s[last];

@@ -168,8 +168,8 @@ LimbWrenches wrenches_of(const Mechanism& limb) {
   if (count == 0) return wrenches;
   // What holding the drives adds, as far as the constraints do not bear it already.
   const Eigen::MatrixXd added = held - always * (always.transpose() * held);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(added, Eigen::ComputeThinU);
-  for (const Screw& wrench : plain_basis(svd.matrixU().leftCols(count), limb.tool, model.size))
+  const Svd svd = svd_of(added);
+  for (const Screw& wrench : plain_basis(svd.u.leftCols(count), limb.tool, model.size))
     wrenches.actuations.push_back(without_pitch(wrench, wrenches.constraints));
   return wrenches;
 }

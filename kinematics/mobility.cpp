@@ -151,8 +151,7 @@ void Analysis::choose_main_branch() {
   report_.locked_mobility = main_ ? main_->locked.mobility : 0;
   report_.locked_platform = main_ ? main_->locked.platform_rank.rank : 0;
   report_.surplus = report_.drives - (report_.finite - report_.locked_mobility);
-  report_.motions_meet =
-      report_.home > report_.finite && (branches_.size() > 1 || departure_.cone);
+  report_.motions_meet = report_.home > report_.finite && (branches_.size() > 1 || departure_.cone);
   describe_task();
 }
 
@@ -181,10 +180,10 @@ void Analysis::describe_task() {
     if (stray[axis] >= kStray)
       report_.parasitic.push_back({axis, stray[axis] * (axis < 3 ? model_.size : 1)});
   if (task.rotations != 1) return;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(turns, Eigen::ComputeThinU);
-  const bool fixed = turns.cols() < 2 || svd.singularValues()[1] < kStray;
+  const Svd svd = svd_of(turns);
+  const bool fixed = turns.cols() < 2 || svd.values[1] < kStray;
   if (!fixed) return;
-  task.rotation_axis = svd.matrixU().col(0);
+  task.rotation_axis = svd.u.col(0);
   int largest = 0;
   task.rotation_axis.cwiseAbs().maxCoeff(&largest);
   if (task.rotation_axis[largest] < 0) task.rotation_axis = -task.rotation_axis;

@@ -128,15 +128,15 @@ TaskSpace task_axes(const Freedoms& freedoms) {
   const Eigen::MatrixXd angular = freedoms.platform.topRows(3);
   const int dof = freedoms.platform_rank.rank;
   if (dof == 0) return task;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(angular, Eigen::ComputeFullV);
-  task.rotations = std::min(
-      decide_rank(svd.singularValues(), freedoms.platform_rank.largest, kTurning).rank, dof);
+  const Svd svd = svd_of(angular);
+  task.rotations =
+      std::min(decide_rank(svd.values, freedoms.platform_rank.largest, kTurning).rank, dof);
   task.translations = dof - task.rotations;
 
   Eigen::MatrixXd translating = freedoms.platform.bottomRows(3);
   if (task.rotations > 0) {
     for (int row : independent_rows(angular, task.rotations)) task.axes.push_back(3 + row);
-    translating = translating * svd.matrixV().rightCols(angular.cols() - task.rotations);
+    translating = translating * svd.v.rightCols(angular.cols() - task.rotations);
   }
   if (task.translations > 0)
     for (int row : independent_rows(translating, task.translations)) task.axes.push_back(row);

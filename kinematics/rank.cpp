@@ -2,6 +2,7 @@
 
 #include <lapacke.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <stdexcept>
 
@@ -44,29 +45,50 @@ RankDecision decide_rank(const Eigen::VectorXd& s, double reference, const RankS
 
 namespace {
 
-/// Singular values, and all right singular vectors as columns when `v` is given.
-/// LAPACK's dgesdd: on screw matrices as right as Jacobi SVD and several times
-/// faster, while Eigen 3.4.0's BDCSVD is wrong on them.
-Eigen::VectorXd singular_values(Eigen::MatrixXd matrix, Eigen::MatrixXd* v) {
+/// Values, and both sets of vectors when `u` and `vt` are given.
+Eigen::VectorXd decompose(Eigen::MatrixXd matrix, Eigen::MatrixXd* u, Eigen::MatrixXd* vt) {
   const auto rows = static_cast<lapack_int>(matrix.rows()),
              cols = static_cast<lapack_int>(matrix.cols());
   Eigen::VectorXd values(std::min(rows, cols));
-  Eigen::MatrixXd left, right_transposed;
-  if (v) {
-    left.resize(rows, rows);
-    right_transposed.resize(cols, cols);
+  const bool vectors = u != nullptr;
+  if (vectors) {
+    u->resize(rows, rows);
+    vt->resize(cols, cols);
   }
-  const lapack_int failed =
-      LAPACKE_dgesdd(LAPACK_COL_MAJOR, v ? 'A' : 'N', rows, cols, matrix.data(), rows,
-                     values.data(), left.data(), rows, right_transposed.data(), cols);
+  double unused = 0;
+  const lapack_int failed = LAPACKE_dgesdd(
+      LAPACK_COL_MAJOR, vectors ? 'A' : 'N', rows, cols, matrix.data(), rows, values.data(),
+      vectors ? u->data() : &unused, rows, vectors ? vt->data() : &unused, cols);
   if (failed != 0)
-    throw std::invalid_argument(failed < 0 ? "singular_values: a matrix entry is not finite"
-                                           : "singular_values: no convergence");
-  if (v) *v = right_transposed.transpose();
+    throw std::invalid_argument(failed < 0 ? "singular values: a matrix entry is not finite"
+                                           : "singular values: no convergence");
   return values;
 }
 
 }  // namespace
+
+Svd svd_of(const Eigen::MatrixXd& matrix) {
+  Svd svd;
+  if (matrix.size() == 0) {
+    svd.u = Eigen::MatrixXd::Identity(matrix.rows(), matrix.rows());
+    svd.v = Eigen::MatrixXd::Identity(matrix.cols(), matrix.cols());
+    return svd;
+  }
+  Eigen::MatrixXd vt;
+  svd.values = decompose(matrix, &svd.u, &vt);
+  svd.v = vt.transpose();
+  return svd;
+}
+
+Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix) {
+  if (matrix.size() == 0) return {};
+  return decompose(matrix, nullptr, nullptr);
+}
+
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& basis) {
+  return Eigen::HouseholderQR<Eigen::MatrixXd>(basis).householderQ() *
+         Eigen::MatrixXd::Identity(basis.rows(), basis.cols());
+}
 
 Kernel kernel_of(const Eigen::MatrixXd& matrix, double reference) {
   Kernel kernel;
@@ -75,15 +97,15 @@ Kernel kernel_of(const Eigen::MatrixXd& matrix, double reference) {
     kernel.basis = Eigen::MatrixXd::Identity(matrix.cols(), matrix.cols());
     return kernel;
   }
-  Eigen::MatrixXd v;
-  kernel.decision = decide_rank(singular_values(matrix, &v), reference);
-  kernel.basis = v.rightCols(matrix.cols() - kernel.decision.rank);
+  const Svd svd = svd_of(matrix);
+  kernel.decision = decide_rank(svd.values, reference);
+  kernel.basis = svd.v.rightCols(matrix.cols() - kernel.decision.rank);
   return kernel;
 }
 
 RankDecision rank_of(const Eigen::MatrixXd& matrix, double reference) {
   if (matrix.size() == 0) return decide_rank(Eigen::VectorXd(), reference);
-  return decide_rank(singular_values(matrix, nullptr), reference);
+  return decide_rank(singular_values(matrix), reference);
 }
 
 }  // namespace polyglide

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "kinematics/pose_table.hpp"
+#include "kinematics/rank.hpp"
 
 namespace polyglide {
 namespace {
@@ -231,8 +232,8 @@ class SceneWriter {
     Eigen::Matrix3Xd spread(3, points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
       spread.col(static_cast<Eigen::Index>(i)) = points[i] - centre;
-    const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(spread, Eigen::ComputeFullU);
-    const Vector3 u = svd.matrixU().col(0), v = svd.matrixU().col(1);
+    const Svd svd = svd_of(spread);
+    const Vector3 u = svd.u.col(0), v = svd.u.col(1);
     const auto angle = [&](const Vector3& p) {
       return std::atan2((p - centre).dot(v), (p - centre).dot(u));
     };

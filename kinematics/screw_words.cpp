@@ -43,8 +43,7 @@ std::string describe(const Screw& screw, const ScrewWords& words) {
 
 /// Orthonormal basis of the column space, base axes first where they lie in it.
 Eigen::Matrix3Xd plain_directions(const Eigen::MatrixXd& span, int rank) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(span, Eigen::ComputeThinU);
-  const Eigen::MatrixXd space = svd.matrixU().leftCols(rank);
+  const Eigen::MatrixXd space = svd_of(span).u.leftCols(rank);
   Eigen::Matrix3Xd basis(3, rank);
   int found = 0;
   const auto add = [&](Vector3 direction) {
@@ -74,12 +73,12 @@ std::string describe_wrench(const Screw& wrench) {
 std::vector<Screw> plain_basis(const Eigen::MatrixXd& system, const Vector3& point, double size) {
   std::vector<Screw> basis;
   if (system.cols() == 0) return basis;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> whole(system, Eigen::ComputeThinU);
-  const int rank = decide_rank(whole.singularValues()).rank;
-  const Eigen::MatrixXd space = whole.matrixU().leftCols(rank);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> axes(space.topRows(3), Eigen::ComputeFullV);
-  const int turning = decide_rank(axes.singularValues(), 1).rank;
-  const Eigen::MatrixXd moments = space.bottomRows(3) * axes.matrixV().rightCols(rank - turning);
+  const Svd whole = svd_of(system);
+  const int rank = decide_rank(whole.values).rank;
+  const Eigen::MatrixXd space = whole.u.leftCols(rank);
+  const Svd axes = svd_of(space.topRows(3));
+  const int turning = decide_rank(axes.values, 1).rank;
+  const Eigen::MatrixXd moments = space.bottomRows(3) * axes.v.rightCols(rank - turning);
 
   Eigen::Matrix3Xd free(3, 0);
   if (moments.cols() > 0) free = plain_directions(moments, static_cast<int>(moments.cols()));
@@ -90,12 +89,9 @@ std::vector<Screw> plain_basis(const Eigen::MatrixXd& system, const Vector3& poi
   }
   if (turning == 0) return basis;
   const Eigen::Matrix3Xd directions = plain_directions(space.topRows(3), turning);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> solver(space.topRows(3),
-                                                 Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::MatrixXd inverse =
-      solver.matrixV().leftCols(turning) *
-      solver.singularValues().head(turning).cwiseInverse().asDiagonal() *
-      solver.matrixU().leftCols(turning).transpose();
+  const Eigen::MatrixXd inverse = axes.v.leftCols(turning) *
+                                  axes.values.head(turning).cwiseInverse().asDiagonal() *
+                                  axes.u.leftCols(turning).transpose();
   for (Eigen::Index i = 0; i < directions.cols(); ++i) {
     const Vector3 axis = directions.col(i);
     Vector3 moment = space.bottomRows(3) * (inverse * axis);

@@ -67,14 +67,13 @@ std::vector<Eigen::MatrixXd> quadratic_forms(const Model& model, const Posture& 
       forms.col(pair) = (both - squares.col(p) - squares.col(q)) / 2;
     }
   if (forms.size() == 0) return {};
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(forms, Eigen::ComputeThinV);
-  const int rank = decide_rank(svd.singularValues(), 1).rank;
+  const Svd svd = svd_of(forms);
+  const int rank = decide_rank(svd.values, 1).rank;
   std::vector<Eigen::MatrixXd> matrices;
   for (int i = 0; i < rank; ++i) {
     Eigen::MatrixXd matrix(k, k);
     for (Eigen::Index p = 0, pair = 0; p < k; ++p)
-      for (Eigen::Index q = p; q < k; ++q, ++pair)
-        matrix(p, q) = matrix(q, p) = svd.matrixV()(pair, i);
+      for (Eigen::Index q = p; q < k; ++q, ++pair) matrix(p, q) = matrix(q, p) = svd.v(pair, i);
     matrices.push_back(std::move(matrix));
   }
   return matrices;

@@ -37,9 +37,9 @@ Rates visible_rates(const Machine& machine, const Freedoms& freedoms) {
       drives.row(static_cast<Eigen::Index>(d)) *= turning;
   Eigen::MatrixXd both(drives.rows() + 6, freedoms.mobility);
   both << drives, platform;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(both, Eigen::ComputeThinV);
-  const Eigen::Index visible = (svd.singularValues().array() > kVisible).count();
-  const Eigen::MatrixXd mix = svd.matrixV().leftCols(visible);
+  const Svd svd = svd_of(both);
+  const Eigen::Index visible = (svd.values.array() > kVisible).count();
+  const Eigen::MatrixXd mix = svd.v.leftCols(visible);
   return {drives * mix, platform * mix, freedoms.platform * mix};
 }
 
@@ -47,17 +47,17 @@ Rates visible_rates(const Machine& machine, const Freedoms& freedoms) {
 double margin_of(const Eigen::MatrixXd& rates) {
   if (rates.cols() == 0) return 1;
   if (rates.rows() < rates.cols()) return 0;
-  const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(rates).singularValues();
+  const Eigen::VectorXd s = singular_values(rates);
   return s[0] > 0 ? s[s.size() - 1] / s[0] : 0;
 }
 
 /// Columns: what `rates` sends to zero.
 Eigen::MatrixXd unseen_by(const Eigen::MatrixXd& rates, double singular) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rates, Eigen::ComputeFullV);
-  const Eigen::VectorXd& s = svd.singularValues();
+  const Svd svd = svd_of(rates);
+  const Eigen::VectorXd& s = svd.values;
   Eigen::Index rank = 0;
   while (rank < s.size() && s[rank] > singular * s[0]) ++rank;
-  return svd.matrixV().rightCols(rates.cols() - rank);
+  return svd.v.rightCols(rates.cols() - rank);
 }
 
 /// Wrenches [f; n/size] about the tool that do no work on twists [w; v/size] of it.
@@ -101,9 +101,9 @@ std::vector<SingularScrew> lost_motions(const Machine& machine, const Posture& p
   const Eigen::Index more = here.cols() - there.cols();
   if (more <= 0) return {};
   const Eigen::MatrixXd rest = here - there * (there.transpose() * here);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rest, Eigen::ComputeFullV);
+  const Svd svd = svd_of(rest);
   const Vector3 tool = posture.bodies[model.mechanism.platform] * model.mechanism.tool;
-  return in_words(here * svd.matrixV().leftCols(more), tool, model.size, describe_wrench);
+  return in_words(here * svd.v.leftCols(more), tool, model.size, describe_wrench);
 }
 
 /// Sign of det J, 0 where J is not square or not finite.
