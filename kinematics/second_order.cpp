@@ -109,17 +109,32 @@ Eigen::MatrixXd tangent_projector(const std::vector<Eigen::MatrixXd>& forms,
   return basis * basis.transpose();
 }
 
-/// Whether the solutions `from` and `to` belong to one component, as far as a straight way shows.
-bool connected(const std::vector<Eigen::MatrixXd>& forms, const Eigen::VectorXd& from,
-               const Eigen::VectorXd& to) {
+/// A component of solutions, known by its first member and the tangent space there.
+struct Component {
+  Eigen::VectorXd member;
+  Eigen::MatrixXd tangent;  ///< projector
+  bool linear = false;      ///< the whole tangent space consists of solutions
+};
+
+/// Whether all forms vanish on the space a projector projects to: P A P = 0.
+bool vanish_on(const std::vector<Eigen::MatrixXd>& forms, const Eigen::MatrixXd& projector) {
+  return std::ranges::all_of(forms, [&](const Eigen::MatrixXd& form) {
+    return (projector * form * projector).cwiseAbs().maxCoeff() < 1e-4;
+  });
+}
+
+/// Whether a solution belongs to a component, as far as a straight way between them shows. In a
+/// linear one it lies in the tangent space of any member, and on it all forms stay zero.
+bool belongs(const std::vector<Eigen::MatrixXd>& forms, const Component& component,
+             const Eigen::VectorXd& to) {
+  constexpr double kInside = 1e-4;
   constexpr double kTurn = 0.3;  // of a projector between neighbours, Frobenius norm
-  const Eigen::MatrixXd start = tangent_projector(forms, from), end = tangent_projector(forms, to);
-  const bool flat = (start - end).norm() < 1e-3;  // one linear space
-  if (flat) return (to - start * to).norm() < 1e-3;
-  if (std::abs(start.trace() - end.trace()) > 0.5) return false;
+  if ((to - component.tangent * to).norm() < kInside) return true;
+  if (component.linear) return false;
+  const Eigen::VectorXd& from = component.member;
   const Eigen::VectorXd target = from.dot(to) < 0 ? Eigen::VectorXd(-to) : to;
   for (const int steps : {8, 32}) {
-    Eigen::MatrixXd before = start;
+    Eigen::MatrixXd before = component.tangent;
     bool through = true;
     for (int i = 1; i <= steps && through; ++i) {
       const double part = static_cast<double>(i) / steps;
@@ -149,17 +164,21 @@ SecondOrder second_order(const Model& model, const Posture& posture, const Eigen
   if (kernel.cols() == 0) return result;
   const auto forms = quadratic_forms(model, posture, kernel, active);
   result.obstructions = static_cast<int>(forms.size());
+  std::vector<Component> known;
   for (int i = 0; i < kStarts; ++i) {
     Eigen::VectorXd direction = random_direction(random, kernel.cols());
     if (!forms.empty() && !solve(forms, direction)) continue;
     direction.normalize();
-    const auto same = std::ranges::find_if(result.components, [&](const auto& component) {
-      return forms.empty() || connected(forms, component.front(), direction);
-    });
-    if (same == result.components.end())
-      result.components.push_back({std::move(direction)});
-    else
-      same->push_back(std::move(direction));
+    std::size_t place = 0;
+    while (place < known.size() && !forms.empty() && !belongs(forms, known[place], direction))
+      ++place;
+    if (place == known.size()) {
+      Eigen::MatrixXd tangent = tangent_projector(forms, direction);
+      const bool linear = vanish_on(forms, tangent);
+      known.push_back({direction, std::move(tangent), linear});
+      result.components.emplace_back();
+    }
+    result.components[place].push_back(std::move(direction));
   }
   return result;
 }
