@@ -14,7 +14,11 @@ constexpr double kCrossed = 0.4;       // of a long step
 constexpr double kTurned = 0.6;        // sine of the angle a tangent space turns on a long step
 constexpr double kNearSingular = 0.1;  // of the smallest singular value one step before
 constexpr double kSameBranch = 0.35;   // sine of the angle between tangent spaces, 20 degrees
-constexpr std::size_t kTries = 3;      // members of a component of directions that are tried
+constexpr double kLong = 0.2;          // a leap, where short steps show nothing
+constexpr double kNearlyClosed = 1e-7;
+constexpr double kLeapt = 0.3;  // of a leap: a posture nearer to home has fallen back
+constexpr std::size_t kLeaps = 8;
+constexpr std::size_t kTries = 3;  // members of a component of directions that are tried
 
 /// Sine of the largest angle from the smaller space to the larger.
 double separation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -37,7 +41,7 @@ class Explorer {
         active_(held ? passive_freedoms(model) : all_freedoms(model)) {}
 
   Departure leave(const Eigen::MatrixXd& kernel);
-  void go_on(Place& place);
+  bool go_on(Place& place);
 
  private:
   /// A step along scaled rates of all freedoms. How far the manifold was left of the
@@ -45,16 +49,17 @@ class Explorer {
   double step(Posture& posture, const Eigen::VectorXd& rates, double length);
   [[nodiscard]] Eigen::MatrixXd kernel_of(const Freedoms& free) const;
   bool wander(Place& place, double length);
+  bool leap(Posture& posture, const Eigen::VectorXd& rates);
   bool leave_smoothly(const Eigen::MatrixXd& kernel);
   void leave_by_second_order(const Eigen::MatrixXd& kernel);
   void meet(const Place& near);
   bool is_shaky(Branch& branch, const Place& near);
-  void walk_far(Branch& branch, const Place& near);
+  bool walk_far(Branch& branch, const Place& near);
 
   const Model& model_;
   const Posture& home_;
   bool held_;
-  const WalkOptions& options_;
+  WalkOptions options_;
   std::mt19937_64& random_;
   std::vector<int> active_;
   Departure result_;
@@ -67,8 +72,10 @@ double Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double len
   Eigen::VectorXd increments = Eigen::VectorXd::Zero(rates.size());
   increments(active_) = length * along;
   advance(model_, straight, increments.cwiseProduct(freedom_scale(model_)));
-  const Projection projection = step_along(model_, posture, active_, along, length);
-  if (!projection.closed) return -1;
+  Posture there = posture;
+  const Projection projection = step_along(model_, there, active_, along, length);
+  if (projection.residual > options_.closure) return -1;
+  posture = std::move(there);
   result_.residual = std::max(result_.residual, projection.residual);
   return displacement(model_, straight, posture) / length;
 }
@@ -135,17 +142,20 @@ bool Explorer::is_shaky(Branch& branch, const Place& near) {
   return branch.excess > 0;
 }
 
-/// From a short step away to generic postures.
-void Explorer::walk_far(Branch& branch, const Place& near) {
+/// From a short step away to generic postures; whether any walk got on.
+bool Explorer::walk_far(Branch& branch, const Place& near) {
+  bool moved = false;
   for (int walk = 0; walk < options_.walks; ++walk) {
     branch.far.push_back(near);
-    go_on(branch.far.back());
+    moved = go_on(branch.far.back()) || moved;
   }
+  return moved;
 }
 
-void Explorer::go_on(Place& place) {
+bool Explorer::go_on(Place& place) {
   for (int i = 0; i < options_.steps; ++i)
-    if (!wander(place, options_.step)) return;
+    if (!wander(place, options_.step)) return i > 0;
+  return true;
 }
 
 bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
@@ -156,7 +166,8 @@ bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
     Freedoms free = freedoms_at(model_, posture);
     Branch branch{kernel_of(free), {}, {}, 0};
     if (branch.near_kernel.cols() != kernel.cols()) return false;
-    walk_far(branch, {std::move(posture), std::move(free)});
+    // Where no walk gets on, a condition of higher order was too small to be seen so close.
+    if (!walk_far(branch, {std::move(posture), std::move(free)})) return false;
     result_.branches.push_back(std::move(branch));
     return true;
   }
@@ -174,24 +185,51 @@ void Explorer::meet(const Place& near) {
   result_.branches.push_back(std::move(branch));
 }
 
+/// A long step whose end is pulled back onto the manifold wherever that is nearest: a way out
+/// where conditions of higher order hide the direction of it.
+bool Explorer::leap(Posture& posture, const Eigen::VectorXd& rates) {
+  const Eigen::VectorXd along = tangent(model_, posture, active_, rates(active_));
+  if (along.isZero()) return false;
+  Eigen::VectorXd increments = Eigen::VectorXd::Zero(rates.size());
+  increments(active_) = kLong * along;
+  Posture there = posture;
+  advance(model_, there, increments.cwiseProduct(freedom_scale(model_)));
+  if (project(model_, there, active_).residual > options_.closure) return false;
+  if (displacement(model_, posture, there) < kLeapt * kLong) return false;
+  posture = std::move(there);
+  return true;
+}
+
 /// Every component of the second-order solution is tried along a few of its members, each way: a
-/// cusp, for example, can be left one way only.
+/// cusp, for example, can be left one way only. Where that sets no condition although home is not
+/// smooth, or leads nowhere, conditions of higher order are at work and leaps have to find the way.
 void Explorer::leave_by_second_order(const Eigen::MatrixXd& kernel) {
   const SecondOrder allowed = second_order(model_, home_, kernel, active_, random_);
   result_.obstructions = allowed.obstructions;
+  result_.refuted = allowed.components.empty();
   for (const auto& component : allowed.components) {
+    if (allowed.obstructions == 0) break;
     bool left = false;
     for (std::size_t i = 0; i < std::min(kTries, component.size()) && !left; ++i)
       for (const int side : {1, -1}) {
         Posture near = home_;
         if (left || step(near, side * (kernel * component[i]), kShort) < 0) continue;
         const Freedoms free = freedoms_at(model_, near);
-        const Eigen::Index dimension = kernel_of(free).cols();
-        if (span_of(component) > dimension) result_.cone = true;
+        if (span_of(component) > kernel_of(free).cols()) result_.cone = true;
         meet({std::move(near), free});
         left = true;
       }
   }
+  if (!result_.branches.empty()) return;
+  for (const auto& component : allowed.components)
+    for (std::size_t i = 0; i < std::min(kLeaps, component.size()); ++i)
+      for (const int side : {1, -1}) {
+        Posture near = home_;
+        if (!leap(near, side * (kernel * component[i]))) continue;
+        result_.blind = true;
+        const Freedoms free = freedoms_at(model_, near);
+        meet({std::move(near), free});
+      }
 }
 
 Departure Explorer::leave(const Eigen::MatrixXd& kernel) {
@@ -200,6 +238,15 @@ Departure Explorer::leave(const Eigen::MatrixXd& kernel) {
   if (!result_.smooth) {
     result_.branches.clear();
     leave_by_second_order(kernel);
+  }
+  // Second order leaves ways open, none of which closes well: nearly a motion. Better a doubtful
+  // motion that is said to be so than a machine called rigid.
+  const bool open = result_.branches.empty() && !result_.refuted;
+  if (open && options_.closure < kNearlyClosed) {
+    options_.closure = kNearlyClosed;
+    result_ = leave(kernel);
+    result_.smooth = false;
+    result_.blind = true;
   }
   return std::move(result_);
 }

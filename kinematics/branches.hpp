@@ -11,6 +11,8 @@ struct WalkOptions {
   int walks = 2;       ///< generic postures to reach on every branch
   int steps = 2;       ///< long steps to each of them
   double step = 0.25;  ///< length of a long step [rad, or length/size of the fastest joint]
+  double closure =
+      1e-10;  ///< loop error that is still closed; more for a drawing that is not exact
 };
 
 /// A posture that was reached, and the freedoms there with nothing held.
@@ -33,6 +35,8 @@ struct Departure {
   bool smooth = false;   ///< every instantaneous freedom continues: one branch
   int obstructions = 0;  ///< independent second-order conditions on the freedoms, when not smooth
   std::vector<Branch> branches;  ///< empty: it cannot move
+  bool refuted = false;          ///< second order leaves no way out: it cannot move
+  bool blind = false;   ///< not smooth although second order sets no condition: found by chance
   bool cone = false;    ///< the directions of one branch at home form a curved cone, not a plane
   double residual = 0;  ///< worst loop-closure error left at a posture reached
 };

@@ -16,6 +16,9 @@ constexpr double kDoubtfulGap = 1e3;  // contract: a smaller gap is said in the 
 constexpr double kDrawn = 1e-11;  // closure or rank noise above it comes from rounded coordinates
 constexpr double kMoved = 0.02;   // of a step: a platform that went less far has not moved
 constexpr double kNearSingular = 0.03;  // of the best conditioned posture's smallest singular value
+constexpr double kStep = 0.25;          // of a walk [rad, or length/size of the fastest joint]
+constexpr double kClosed = 1e-10;       // loop error at a posture reached by exact data, and
+constexpr double kLoose = 100;          // how much more than a drawing's noise it may be
 constexpr int kFarther = 3;             // steps made on when the drives seem not to hold
 constexpr double kStray = 1e-5;         // [rad, or length/size] of a coordinate said to stay zero
 
@@ -46,7 +49,9 @@ class Analysis {
   void note(const RankDecision& rank);
   void note(const Freedoms& freedoms);
   void describe_task();
-  [[nodiscard]] WalkOptions walk_options() const { return {options_.walks, options_.steps, 0.25}; }
+  [[nodiscard]] WalkOptions walk_options(int walks, int steps) const {
+    return {walks, steps, kStep, std::max(kClosed, kLoose * report_.noise)};
+  }
 
   const Model& model_;
   const MobilityOptions& options_;
@@ -91,7 +96,8 @@ void Analysis::look_at_home() {
 }
 
 void Analysis::explore_branches() {
-  departure_ = leave(model_, home_, home_free_.kernel, false, walk_options(), random_);
+  departure_ = leave(model_, home_, home_free_.kernel, false,
+                     walk_options(options_.walks, options_.steps), random_);
   report_.residual = departure_.residual;
   report_.obstructions = departure_.obstructions;
   for (Branch& branch : departure_.branches) {
@@ -99,7 +105,7 @@ void Analysis::explore_branches() {
     // Near a self-motion the drives hardly hold: only farther away is it seen that they do.
     if (branches_.back().locked.platform_rank.rank == 0 || branch.excess > 0) continue;
     branch.far.push_back(branch.far.back());
-    walk_on(model_, branch.far.back(), {1, kFarther, 0.25}, random_);
+    walk_on(model_, branch.far.back(), walk_options(1, kFarther), random_);
     branches_.back() = measure(branch);
   }
 }
@@ -198,7 +204,7 @@ void Analysis::look_for_self_motion() {
   const bool settled = report_.locked_platform > 0 || report_.motions_meet;
   if (report_.home_locked_platform == 0 || settled) return;
   const Departure held =
-      leave(model_, home_, home_locked_.kernel, true, {1, options_.steps, 0.25}, random_);
+      leave(model_, home_, home_locked_.kernel, true, walk_options(1, options_.steps), random_);
   self_motion_ = std::ranges::any_of(held.branches, [&](const Branch& branch) {
     return std::ranges::any_of(branch.far, [&](const Place& place) {
       const double way = displacement(model_, home_, place.posture);
@@ -269,6 +275,10 @@ void Analysis::decide() {
                     "precision was "
                     "taken as exact, and loops were closed to {:.0e}.",
                     std::max(report_.noise, report_.residual), report_.residual));
+  if (departure_.blind)
+    reasons.push_back(
+        "Home is singular beyond second order: the ways out of it were found by random trials, and "
+        "another may have been missed.");
   if (report_.rank_gap < kDoubtfulGap)
     reasons.push_back(
         fmt::format("A rank decision rests on a gap of only {:.3g}; treat the verdict with care.",

@@ -9,7 +9,7 @@ namespace polyglide {
 namespace {
 
 constexpr int kStarts = 24;  // two branches are told with one in ten thousand missed
-constexpr int kIterations = 40;
+constexpr int kIterations = 30;
 constexpr double kSatisfied = 1e-8;  // of a form whose coefficients are about 1
 constexpr double kDamping = 1e-12;
 
@@ -79,7 +79,8 @@ std::vector<Eigen::MatrixXd> quadratic_forms(const Model& model, const Posture& 
   return matrices;
 }
 
-/// A common zero of the forms on the unit sphere near `start`; false when none is reached.
+/// A common zero of the forms on the unit sphere near `start`; false when none is reached. Steps go
+/// along the sphere: free steps would shrink towards the zero vector, which solves everything.
 bool solve(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd& start) {
   const auto m = static_cast<Eigen::Index>(forms.size());
   Eigen::VectorXd values(m);
@@ -91,10 +92,10 @@ bool solve(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd& start) {
       values[i] = slopes.row(i).dot(start) / 2;
     }
     if (values.cwiseAbs().maxCoeff() < kSatisfied) return true;
+    slopes -= (slopes * start) * start.transpose();
     Eigen::MatrixXd gram = slopes * slopes.transpose();
     gram.diagonal().array() += kDamping;
     start -= slopes.transpose() * gram.llt().solve(values);
-    if (!(start.norm() > 1e-6)) return false;
   }
   return false;
 }
@@ -161,25 +162,40 @@ Eigen::VectorXd random_direction(std::mt19937_64& random, Eigen::Index size) {
 SecondOrder second_order(const Model& model, const Posture& posture, const Eigen::MatrixXd& kernel,
                          const std::vector<int>& active, std::mt19937_64& random) {
   SecondOrder result;
-  if (kernel.cols() == 0) return result;
+  const Eigen::Index freedoms = kernel.cols();
+  if (freedoms == 0) return result;
   const auto forms = quadratic_forms(model, posture, kernel, active);
   result.obstructions = static_cast<int>(forms.size());
+  // Freedoms that no form feels are free to add to any solution, and solve everything by
+  // themselves: the zeros are looked for among the others.
+  Eigen::MatrixXd all(freedoms * static_cast<Eigen::Index>(forms.size()), freedoms);
+  for (std::size_t i = 0; i < forms.size(); ++i)
+    all.middleRows(freedoms * static_cast<Eigen::Index>(i), freedoms) = forms[i];
+  const Svd svd = svd_of(all);
+  const int felt = decide_rank(svd.values, 1).rank;
+  const Eigen::MatrixXd bound = svd.v.leftCols(felt), loose = svd.v.rightCols(freedoms - felt);
+  std::vector<Eigen::MatrixXd> reduced;
+  for (const Eigen::MatrixXd& form : forms) reduced.push_back(bound.transpose() * form * bound);
+
   std::vector<Component> known;
-  for (int i = 0; i < kStarts; ++i) {
-    Eigen::VectorXd direction = random_direction(random, kernel.cols());
-    if (!forms.empty() && !solve(forms, direction)) continue;
-    direction.normalize();
+  for (int i = 0; i < kStarts && felt > 0; ++i) {
+    Eigen::VectorXd zero = random_direction(random, felt);
+    if (!solve(reduced, zero)) continue;
     std::size_t place = 0;
-    while (place < known.size() && !forms.empty() && !belongs(forms, known[place], direction))
-      ++place;
+    while (place < known.size() && !belongs(reduced, known[place], zero)) ++place;
     if (place == known.size()) {
-      Eigen::MatrixXd tangent = tangent_projector(forms, direction);
-      const bool linear = vanish_on(forms, tangent);
-      known.push_back({direction, std::move(tangent), linear});
+      Eigen::MatrixXd tangent = tangent_projector(reduced, zero);
+      const bool linear = vanish_on(reduced, tangent);
+      known.push_back({zero, std::move(tangent), linear});
       result.components.emplace_back();
     }
-    result.components[place].push_back(std::move(direction));
+    const Eigen::VectorXd more = random_direction(random, loose.cols());
+    result.components[place].push_back((bound * zero + loose * more).normalized());
   }
+  if (!known.empty() || loose.cols() == 0) return result;
+  result.components.emplace_back();
+  for (int i = 0; i < kStarts; ++i)
+    result.components[0].push_back((loose * random_direction(random, loose.cols())).normalized());
   return result;
 }
 
