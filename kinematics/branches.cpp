@@ -9,7 +9,7 @@ namespace polyglide {
 namespace {
 
 constexpr double kShort = 0.03;        // first step: tangents still tell branches apart
-constexpr double kStraight = 0.3;      // of a step: a smooth manifold leaves its tangent no further
+constexpr double kStraight = 0.15;     // of a step: a smooth manifold leaves its tangent no further
 constexpr double kCrossed = 0.4;       // of a long step
 constexpr double kTurned = 0.6;        // sine of the angle a tangent space turns on a long step
 constexpr double kNearSingular = 0.1;  // of the smallest singular value one step before
@@ -27,6 +27,14 @@ double separation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   if (small.cols() == 0) return 0;
   const Eigen::MatrixXd rest = small - large * (large.transpose() * small);
   return singular_values(rest)[0];
+}
+
+/// A random mixture of all columns in which none is weak, so that a freedom that does not continue
+/// is felt.
+Eigen::VectorXd even_mixture(const Eigen::MatrixXd& kernel, std::mt19937_64& random) {
+  Eigen::VectorXd weights = random_direction(random, kernel.cols());
+  for (double& weight : weights) weight = std::copysign(0.5 + std::abs(weight) / 2, weight);
+  return kernel * weights;
 }
 
 class Explorer {
@@ -129,8 +137,7 @@ bool Explorer::wander(Place& place, double length) {
 /// and second order counts the rest.
 bool Explorer::is_shaky(Branch& branch, const Place& near) {
   Posture posture = near.posture;
-  const double bend = step(
-      posture, branch.near_kernel * random_direction(random_, branch.near_kernel.cols()), kShort);
+  const double bend = step(posture, even_mixture(branch.near_kernel, random_), kShort);
   if (bend >= 0 && bend < kStraight) return false;
   const SecondOrder allowed =
       second_order(model_, near.posture, branch.near_kernel, active_, random_);
@@ -161,7 +168,7 @@ bool Explorer::go_on(Place& place) {
 bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
   for (const double length : {kShort, kShort / 4}) {
     Posture posture = home_;
-    const double bend = step(posture, kernel * random_direction(random_, kernel.cols()), length);
+    const double bend = step(posture, even_mixture(kernel, random_), length);
     if (bend < 0 || bend > kStraight) continue;
     Freedoms free = freedoms_at(model_, posture);
     Branch branch{kernel_of(free), {}, {}, 0};
