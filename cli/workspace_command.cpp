@@ -22,9 +22,9 @@ std::string box_text(const Box& box) {
 }
 
 void print_page(const Workspace& workspace, const WorkspaceOptions& how, const std::string& name) {
-  std::cout << fmt::format("{}: workspace {} (between {} and {}), positions from home\n", name,
-                           litres(workspace.volume), litres(workspace.volume_lower),
-                           litres(workspace.volume_upper));
+  std::cout << fmt::format("{}: workspace {} ({} between {} and {}), positions from home\n", name,
+                           litres(workspace.volume), workspace.certified ? "proved" : "estimated",
+                           litres(workspace.volume_lower), litres(workspace.volume_upper));
   std::vector<std::vector<std::string>> rows{
       {"  extent",
        fmt::format("{} to {}", point_in_mm(workspace.lower), point_in_mm(workspace.upper))},
