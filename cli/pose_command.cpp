@@ -6,6 +6,7 @@
 #include "cli/machines.hpp"
 #include "cli/print.hpp"
 #include "cli/singularities.hpp"
+#include "kinematics/assembly_modes.hpp"
 #include "kinematics/solve.hpp"
 
 namespace polyglide {
@@ -55,22 +56,67 @@ ordered_json inverse(const Machine& machine, const Pose& pose,
   return document;
 }
 
+ordered_json solution_json(const ForwardSolution& solution) {
+  ordered_json json{{"pose", pose_json(solution.pose)},
+                    {"residual", solution.residual},
+                    {"certified", solution.certified}};
+  if (solution.certified) json["radius"] = solution.radius;
+  json["home_mode"] = solution.home_mode;
+  json["connected_to_home"] = solution.connected_to_home;
+  json["region"] = solution.region < 0 ? ordered_json() : ordered_json(solution.region);
+  return json;
+}
+
+ordered_json completeness_json(const Completeness& completeness) {
+  return {{"starts", completeness.starts},
+          {"hits", completeness.hits},
+          {"rarest_hits", completeness.rarest_hits},
+          {"unseen", completeness.unseen},
+          {"bound", completeness.bound > 0 ? ordered_json(completeness.bound) : ordered_json()},
+          {"complete", completeness.complete},
+          {"stopped", completeness.stopped}};
+}
+
+void print_modes(const Machine& machine, const AssemblyModes& modes, bool all) {
+  std::cout << fmt::format("{}: {} assembly mode(s) found\n", machine.model.mechanism.name,
+                           modes.solutions.size());
+  for (const ForwardSolution& solution : modes.solutions) {
+    std::string notes;
+    if (solution.home_mode)
+      notes = " (home's assembly mode)";
+    else if (solution.connected_to_home)
+      notes = " (joined with home without a singularity)";
+    if (all && !solution.certified) notes += " (not proved)";
+    if (all && solution.region >= 0) notes += fmt::format(" region {}", solution.region + 1);
+    std::cout << fmt::format("  pose from home {}{}\n", pose_text(solution.pose), notes);
+  }
+  const Completeness& completeness = modes.completeness;
+  if (!all) return;
+  if (completeness.complete)
+    std::cout << "  all there can be, each proved\n";
+  else
+    std::cout << fmt::format(
+        "  searched from {} starts until {}; estimated share of modes not seen "
+        "at most {:.2g} of the hits\n",
+        completeness.starts, completeness.stopped, completeness.unseen);
+}
+
 ordered_json forward(const Machine& machine, const std::string& text, bool all, std::uint64_t seed,
                      bool json) {
-  const auto solutions = solve_forward(machine, read_drives(text, machine.model), all, seed);
-  ordered_json document{{"name", machine.model.mechanism.name}, {"count", solutions.size()}};
+  AssemblySearch search;
+  search.seed = seed;
+  const Eigen::VectorXd drives = read_drives(text, machine.model);
+  AssemblyModes modes;
+  if (all)
+    modes = find_assembly_modes(machine, drives, search);
+  else
+    modes.solutions = solve_forward(machine, drives, false, seed);
+  ordered_json document{{"name", machine.model.mechanism.name}, {"count", modes.solutions.size()}};
   document["solutions"] = ordered_json::array();
-  for (const ForwardSolution& solution : solutions)
-    document["solutions"].push_back({{"pose", pose_json(solution.pose)},
-                                     {"residual", solution.residual},
-                                     {"certified", solution.closed_form},
-                                     {"home_mode", solution.home_mode}});
-  if (json) return document;
-  std::cout << fmt::format("{}: {} assembly mode(s) found\n", machine.model.mechanism.name,
-                           solutions.size());
-  for (const ForwardSolution& solution : solutions)
-    std::cout << fmt::format("  pose from home {}{}\n", pose_text(solution.pose),
-                             solution.home_mode ? " (home's assembly mode)" : "");
+  for (const ForwardSolution& solution : modes.solutions)
+    document["solutions"].push_back(solution_json(solution));
+  if (all) document["completeness"] = completeness_json(modes.completeness);
+  if (!json) print_modes(machine, modes, all);
   return document;
 }
 

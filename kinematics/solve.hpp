@@ -69,6 +69,11 @@ struct ForwardSolution {
   double residual = 0;  ///< largest closure error [m or rad, scaled by size]
   bool closed_form = false;
   bool home_mode = false;  ///< connected with home by continuation of the drives
+  bool certified = false;  ///< proved: a root is in the box of `radius` around it, and only one
+  double radius = 0;       ///< [rad, or length/size]; 0 unless certified
+  int region = -1;  ///< modes of one region are joined without a singularity; -1: not looked for
+  bool connected_to_home = false;  ///< home_mode, or joined with home's pose without a singularity
+  std::optional<Posture> posture;  ///< where it was found on the whole mechanism
 };
 
 /// Platform poses for drive positions from home. `all` asks for every assembly
@@ -78,6 +83,10 @@ struct ForwardSolution {
 [[nodiscard]] std::vector<ForwardSolution> solve_forward(const Machine& machine,
                                                          const Eigen::VectorXd& drives, bool all,
                                                          std::uint64_t seed = 1);
+
+/// The solution on home's own mode, drives followed from home; nullopt when they cannot be.
+[[nodiscard]] std::optional<ForwardSolution> follow_from_home(const Machine& machine,
+                                                              const Eigen::VectorXd& drives);
 
 /// Follows the drives from a posture; false when the machine cannot be assembled there.
 [[nodiscard]] bool solve_forward_from(const Machine& machine, const Eigen::VectorXd& drives,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kinematics/certified_volume.hpp"
 #include "kinematics/region_boundary.hpp"
 #include "kinematics/region_measure.hpp"
 
@@ -84,6 +85,19 @@ void take_measure(Workspace& result, const Probe& probe, const Region& region,
   }
 }
 
+/// Puts proved bounds in place of sampled ones, where there is a proof.
+void certify(Workspace& result, const Machine& machine, const WorkspaceOptions& options,
+             const Region& region, const Bounds& reach) {
+  constexpr double kOfAccuracy = 2;  // bounds as wide as the volume is uncertain to either side
+  const double tolerance = std::max(kOfAccuracy * options.accuracy, 1e-4);
+  const auto proved = certify_volume(machine, options.ignored, options.rotation, reach, tolerance);
+  if (!proved || region.empty) return;
+  result.certified = true;
+  result.volume_lower = proved->lower;
+  result.volume_upper = proved->upper;
+  result.volume = std::clamp(result.volume, proved->lower, proved->upper);
+}
+
 }  // namespace
 
 Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& options) {
@@ -99,6 +113,8 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
     take_measure(result, probe, region, measure_region(probe, region, fineness, options.accuracy));
     const Boundary boundary = find_boundary(probe, region, fineness.bisections);
     result.limits_hit = boundary.limits;
+    if (!options.volume_only && probe.dimensions() == 3)
+      certify(result, evaluator.machine(), options, region, search_bounds(probe));
     result.lower = boundary.extent.lower;
     result.upper = boundary.extent.upper;
     if (!options.volume_only)

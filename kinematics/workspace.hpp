@@ -32,7 +32,8 @@ struct Slice {
 /// from home, base frame, metres.
 struct Workspace {
   double volume = 0;
-  double volume_lower = 0, volume_upper = 0;  ///< cells wholly in / not wholly out by sampling
+  double volume_lower = 0, volume_upper = 0;  ///< cells wholly in / not wholly out
+  bool certified = false;  ///< the bounds are proved by intervals; else estimated by sampling
   Vector3 lower = Vector3::Zero(), upper = Vector3::Zero();  ///< bounding box of reachable cells
   std::vector<std::pair<double, double>> area_by_z;
   Cylinder inscribed_cylinder;      ///< largest volume

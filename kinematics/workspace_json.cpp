@@ -55,6 +55,7 @@ Json to_json(const Workspace& workspace) {
   Json json;
   json["volume"] = workspace.volume;
   json["volume_bounds"] = {workspace.volume_lower, workspace.volume_upper};
+  json["bounds"] = workspace.certified ? "certified" : "estimated";
   json["extent"] = {{"lower", json_of(workspace.lower)}, {"upper", json_of(workspace.upper)}};
   json["area_by_z"] = Json::array();
   for (const auto& [z, area] : workspace.area_by_z)

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "kinematics/region.hpp"
+
+namespace polyglide {
+
+/// Proved bounds of the volume of the workspace: the connected part around home where every
+/// limit holds and det J keeps home's sign.
+struct CertifiedVolume {
+  double lower = 0, upper = 0;  ///< [m³]
+  int cells = 0;                ///< examined
+  bool reached = false;         ///< upper - lower <= tolerance × upper
+};
+
+/// By interval arithmetic on an octree. A cell is in, out, or crossed by limits; a limit that
+/// crosses is enclosed between two parallel planes (mean value form), whose gap shrinks with the
+/// square of the cell, and the volumes cut off by planes are closed forms. Cells with the widest
+/// bounds are split until `tolerance` [relative] is met or `budget` cells were examined. Parts are
+/// joined for the lower bound only through points proved inside, and separated for the upper
+/// bound only by cells proved outside.
+/// nullopt where nothing can be proved: no closed form, fewer than three translations, home
+/// outside or singular, or a workspace that the search box does not hold.
+/// Poses are meant without rounding of the rotation; the slack of 1e-9 m at limits is the
+/// evaluator's.
+[[nodiscard]] std::optional<CertifiedVolume> certify_volume(const Machine& machine,
+                                                            const std::vector<std::string>& ignored,
+                                                            const Eigen::Quaterniond& rotation,
+                                                            const Bounds& box, double tolerance,
+                                                            int budget = 1000000);
+
+}  // namespace polyglide

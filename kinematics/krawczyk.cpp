@@ -1,0 +1,349 @@
+#include "kinematics/krawczyk.hpp"
+
+#include "kinematics/interval_matrix.hpp"
+#include "kinematics/interval_rotation.hpp"
+#include "kinematics/manifold.hpp"
+
+namespace polyglide {
+namespace {
+
+/// Values and derivatives of n equations on a box of n unknowns around a point.
+struct Enclosure {
+  std::vector<Interval> values;
+  IntervalMatrix jacobian;
+};
+
+/// Krawczyk's operator on boxes that grow from the Newton step: K(X) = -Y f(0) + (I - Y J(X)) X
+/// with Y about J(0)⁻¹. @param enclose gives an Enclosure for a box of increments.
+template <typename System>
+ModeCertificate prove_root(int n, const System& enclose) {
+  constexpr double kLargest = 1e-2;
+  std::vector<Interval> box(n, Interval(0.0));
+  const Enclosure centre = enclose(box);
+  const Eigen::MatrixXd middles = middle(centre.jacobian);
+  if (!middles.allFinite()) return {};
+  const Eigen::MatrixXd inverse = middles.partialPivLu().inverse();
+  if (!inverse.allFinite()) return {};
+  std::vector<Interval> newton(n, Interval(0.0));
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) newton[i] -= inverse(i, j) * centre.values[j];
+  double half = 1e-14;
+  for (const Interval& step : newton) half = std::max(half, 2 * magnitude(step));
+  for (; half < kLargest; half *= 8) {
+    for (Interval& side : box) side = Interval(-half, half);
+    IntervalMatrix rest = product(inverse, enclose(box).jacobian);
+    bool inside = true;
+    for (int i = 0; i < n && inside; ++i) {
+      rest(i, i) -= 1.0;
+      Interval mapped = newton[i];
+      for (int j = 0; j < n; ++j) mapped -= rest(i, j) * box[j];
+      inside = mapped.lower() > -half && mapped.upper() < half;
+    }
+    if (inside) return {true, half};
+  }
+  return {};
+}
+
+using Rotation = IntervalRotation;
+
+// --- Platforms placed by distances ---
+
+/// |R p + t - centre|² = radius², p from the tool.
+struct Distance {
+  IntervalVector arm, centre;
+  Interval radius;
+};
+
+Distance distance_of(const Machine& machine, const Leg& leg, double drive) {
+  const Vector3& tool = machine.model.mechanism.tool;
+  const IntervalVector p = vector_of(leg.platform_point), b = vector_of(leg.base_point);
+  Distance result;
+  const bool guide = leg.kind == Leg::Kind::guide_rod;
+  for (int i = 0; i < 3; ++i) {
+    result.arm[i] = p[i] - tool[i];
+    result.centre[i] = b[i] - tool[i];
+    if (guide) result.centre[i] += Interval(drive) * leg.direction[i];
+  }
+  // Lengths are those of the file's points, not of their rounded distance.
+  result.radius = root(squared_norm({p[0] - b[0], p[1] - b[1], p[2] - b[2]}));
+  if (!guide) result.radius += drive;
+  return result;
+}
+
+// --- Loops of screws ---
+
+/// One factor of a loop: the exponential of a screw times a coordinate, or a fixed rotation about
+/// a point.
+struct Factor {
+  int freedom = -1;
+  bool translational = false;
+  int sign = 1;
+  IntervalVector w, v;
+  double coordinate = 0;
+  Rotation rotation;  // fixed factor: rotation, with shift
+  IntervalVector shift;
+};
+
+struct Place {
+  Rotation rotation = no_rotation();
+  IntervalVector shift{Interval(0.0), Interval(0.0), Interval(0.0)};
+};
+
+Place operator*(const Place& a, const Place& b) {
+  Place result{product(a.rotation, b.rotation), turned(a.rotation, b.shift)};
+  for (int i = 0; i < 3; ++i) result.shift[i] += a.shift[i];
+  return result;
+}
+
+/// An axis of unit length: what rounding left of it is widened, what is exact stays exact.
+IntervalVector unit_axis(const Vector3& axis) {
+  IntervalVector result = vector_of(axis);
+  if (axis.cwiseAbs().sum() == 1 && axis.cwiseAbs().maxCoeff() == 1) return result;
+  for (int i = 0; i < 3; ++i)
+    if (axis[i] != 0) result[i] = outward(axis[i], axis[i], 2);
+  return result;
+}
+
+Place place_of(const Factor& factor, const Interval& increment) {
+  if (factor.freedom < 0) return {factor.rotation, factor.shift};
+  Place place;
+  const Interval q = static_cast<double>(factor.sign) * (factor.coordinate + increment);
+  if (factor.translational) {
+    for (int i = 0; i < 3; ++i) place.shift[i] = q * factor.v[i];
+    return place;
+  }
+  place.rotation = rotation_about(factor.w, q);
+  // A point of the axis, and the advance along it.
+  const IntervalVector point = cross(factor.w, factor.v);
+  const IntervalVector moved = turned(place.rotation, point);
+  const Interval advance = q * dot(factor.w, factor.v);
+  for (int i = 0; i < 3; ++i) place.shift[i] = point[i] - moved[i] + advance * factor.w[i];
+  return place;
+}
+
+class Closure {
+ public:
+  Closure(const Model& model, const Posture& posture)
+      : model_(model), columns_(static_cast<int>(model.freedoms.size())) {
+    for (const auto& loop : model.loops) {
+      loops_.emplace_back();
+      for (const LoopStep& step : loop) add(step, posture);
+    }
+  }
+
+  [[nodiscard]] int rows() const { return 6 * static_cast<int>(loops_.size()); }
+
+  /// Per loop the vector of the rotation's skew part, zero with a rotation only for none or half a
+  /// turn, and the shift/size. @param box increments per freedom, translations per size.
+  [[nodiscard]] Enclosure enclose(const std::vector<Interval>& box) const {
+    Enclosure result{std::vector<Interval>(rows(), Interval(0.0)),
+                     IntervalMatrix(rows(), columns_)};
+    for (std::size_t l = 0; l < loops_.size(); ++l) enclose_loop(static_cast<int>(l), box, result);
+    return result;
+  }
+
+ private:
+  void add(const LoopStep& step, const Posture& posture) {
+    const Joint& joint = model_.mechanism.joints[step.joint];
+    std::vector<Factor> factors;
+    const int first = model_.first_freedom[step.joint];
+    if (joint.type == JointType::spherical) {
+      for (int i : {2, 1, 0}) {
+        Factor factor;
+        factor.freedom = first + i;
+        factor.w = vector_of(Vector3::Unit(i));
+        factor.v = cross(vector_of(joint.at), factor.w);
+        factors.push_back(factor);
+      }
+      Factor fixed;
+      fixed.rotation = rotation_of(posture.balls[step.joint]);
+      const IntervalVector at = vector_of(joint.at);
+      if (step.sign < 0) fixed.rotation = transposed(fixed.rotation);
+      const IntervalVector moved = turned(fixed.rotation, at);
+      for (int i = 0; i < 3; ++i) fixed.shift[i] = at[i] - moved[i];
+      factors.push_back(fixed);
+    } else {
+      for (int i = 0; i < freedoms(joint.type); ++i) {
+        const Freedom& freedom = model_.freedoms[first + i];
+        Factor factor;
+        factor.freedom = first + i;
+        factor.translational = freedom.translational;
+        factor.coordinate = posture.q[first + i];
+        // Whole turns change nothing, unless the joint is a screw.
+        if (!factor.translational && joint.type != JointType::helical)
+          factor.coordinate = std::remainder(factor.coordinate, 2 * M_PI);
+        factor.w = unit_axis(freedom.screw.head<3>());
+        factor.v = vector_of(freedom.screw.tail<3>());
+        factors.push_back(factor);
+      }
+    }
+    if (step.sign < 0) {
+      std::reverse(factors.begin(), factors.end());
+      for (Factor& factor : factors) factor.sign = -1;
+    }
+    loops_.back().insert(loops_.back().end(), factors.begin(), factors.end());
+  }
+
+  static Rotation transposed(const Rotation& r) {
+    Rotation result;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) result[i][j] = r[j][i];
+    return result;
+  }
+
+  void enclose_loop(int loop, const std::vector<Interval>& box, Enclosure& result) const {
+    Place way;
+    std::vector<std::pair<IntervalVector, IntervalVector>> screws;
+    std::vector<int> freedom;
+    for (const Factor& factor : loops_[loop]) {
+      Interval increment(0.0);
+      if (factor.freedom >= 0) {
+        increment = box[factor.freedom];
+        if (factor.translational) increment *= model_.size;
+        // The screw where the factors before have carried it.
+        IntervalVector w = turned(way.rotation, factor.w), v = turned(way.rotation, factor.v);
+        if (factor.translational) w = {Interval(0.0), Interval(0.0), Interval(0.0)};
+        const IntervalVector moment = cross(way.shift, w);
+        for (int i = 0; i < 3; ++i) {
+          v[i] = static_cast<double>(factor.sign) * (v[i] + moment[i]);
+          w[i] *= static_cast<double>(factor.sign);
+        }
+        screws.emplace_back(w, v);
+        freedom.push_back(factor.freedom);
+      }
+      way = way * place_of(factor, increment);
+    }
+    const Rotation& r = way.rotation;
+    const int row = 6 * loop;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      result.values[row + i] = (r[k][j] - r[j][k]) / 2.0;
+      result.values[row + 3 + i] = way.shift[i] / model_.size;
+    }
+    for (std::size_t s = 0; s < screws.size(); ++s) {
+      const auto& [w, v] = screws[s];
+      const Interval scale(model_.freedoms[freedom[s]].translational ? model_.size : 1.0);
+      // d(R) = ŵ R, d(shift) = w × shift + v.
+      Rotation rate;
+      for (int c = 0; c < 3; ++c) {
+        const IntervalVector column = cross(w, IntervalVector{r[0][c], r[1][c], r[2][c]});
+        for (int i = 0; i < 3; ++i) rate[i][c] = column[i];
+      }
+      const IntervalVector turn = cross(w, way.shift);
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        result.jacobian(row + i, freedom[s]) += scale * (rate[k][j] - rate[j][k]) / 2.0;
+        result.jacobian(row + 3 + i, freedom[s]) += scale * (turn[i] + v[i]) / model_.size;
+      }
+    }
+  }
+
+  const Model& model_;
+  int columns_;
+  std::vector<std::vector<Factor>> loops_;
+};
+
+bool is_zero(const Interval& x) { return x.lower() == 0 && x.upper() == 0; }
+
+/// Rows that are not identically zero on the box.
+std::vector<int> live_rows(const Enclosure& on_box) {
+  std::vector<int> rows;
+  for (int row = 0; row < on_box.jacobian.rows(); ++row) {
+    bool zero = is_zero(on_box.values[row]);
+    for (int c = 0; zero && c < on_box.jacobian.cols(); ++c)
+      zero = is_zero(on_box.jacobian(row, c));
+    if (!zero) rows.push_back(row);
+  }
+  return rows;
+}
+
+/// Does what the drives leave free move the platform?
+bool platform_is_held(const Model& model, const Posture& posture, const Eigen::MatrixXd& jacobian,
+                      const std::vector<int>& passive) {
+  const Eigen::MatrixXd kernel = Eigen::FullPivLU<Eigen::MatrixXd>(jacobian).kernel();
+  const Eigen::MatrixXd platform = columns(
+      body_jacobian(model, posture, model.mechanism.platform) * freedom_scale(model).asDiagonal(),
+      passive);
+  return (platform * kernel).cwiseAbs().maxCoeff() < 1e-6 * (1 + model.size) * kernel.norm();
+}
+
+}  // namespace
+
+ModeCertificate certify_pose(const Machine& machine, const std::vector<int>& legs,
+                             const Eigen::VectorXd& drives, const Pose& pose,
+                             bool translations_only) {
+  const int n = translations_only ? 3 : 6;
+  if (static_cast<int>(legs.size()) != n || !pose.position.allFinite()) return {};
+  const UpwardRounding rounding;
+  const double size = machine.model.size;
+  std::vector<Distance> distances;
+  for (int index : legs) {
+    const Leg& leg = machine.legs->legs[index];
+    distances.push_back(distance_of(machine, leg, drives[leg.drive]));
+  }
+  const Rotation at = rotation_of(pose.rotation);
+  const auto enclose = [&](const std::vector<Interval>& box) {
+    Enclosure result{std::vector<Interval>(n), IntervalMatrix(n, n)};
+    std::array<IntervalVector, 3> axes;
+    Rotation turn = at;
+    if (n == 6) {
+      const Rotation z = rotation_about(vector_of(Vector3::UnitZ()), box[5]);
+      const Rotation zy = product(z, rotation_about(vector_of(Vector3::UnitY()), box[4]));
+      turn = product(product(zy, rotation_about(vector_of(Vector3::UnitX()), box[3])), at);
+      axes = {turned(zy, vector_of(Vector3::UnitX())), turned(z, vector_of(Vector3::UnitY())),
+              vector_of(Vector3::UnitZ())};
+    }
+    for (int i = 0; i < n; ++i) {
+      const IntervalVector arm = turned(turn, distances[i].arm);
+      IntervalVector gap;
+      for (int k = 0; k < 3; ++k)
+        gap[k] = arm[k] + (pose.position[k] + box[k] * size) - distances[i].centre[k];
+      result.values[i] = (squared_norm(gap) - square(distances[i].radius)) / (size * size);
+      for (int k = 0; k < n; ++k)
+        result.jacobian(i, k) =
+            k < 3 ? 2.0 * gap[k] / size : 2.0 * dot(gap, cross(axes[k - 3], arm)) / (size * size);
+    }
+    return result;
+  };
+  return prove_root(n, enclose);
+}
+
+ModeCertificate certify_closure(const Model& model, const Posture& posture) {
+  const std::vector<int> passive = passive_freedoms(model);
+  if (model.loops.empty() || passive.empty()) return {};
+  const UpwardRounding rounding;
+  const Closure closure(model, posture);
+  constexpr double kNear = 1e-3;  // no box to be tried is larger in its effect than this
+  std::vector<Interval> wide(model.freedoms.size(), Interval(0.0));
+  for (int f : passive) wide[f] = Interval(-kNear, kNear);
+  const std::vector<int> rows = live_rows(closure.enclose(wide));
+  const int n = static_cast<int>(rows.size());
+  if (n == 0 || n > static_cast<int>(passive.size())) return {};
+
+  const Eigen::MatrixXd all =
+      middle(closure.enclose(std::vector<Interval>(model.freedoms.size(), Interval(0.0))).jacobian);
+  const Eigen::MatrixXd jacobian = all(rows, passive);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian);
+  if (std::abs(qr.matrixR()(n - 1, n - 1)) < 1e-10 * qr.maxPivot()) return {};
+  if (n < static_cast<int>(passive.size()) && !platform_is_held(model, posture, jacobian, passive))
+    return {};
+  std::vector<int> unknown;
+  for (int i = 0; i < n; ++i) unknown.push_back(passive[qr.colsPermutation().indices()[i]]);
+
+  const auto enclose = [&](const std::vector<Interval>& box) {
+    std::vector<Interval> increments(model.freedoms.size(), Interval(0.0));
+    for (int i = 0; i < n; ++i) increments[unknown[i]] = box[i];
+    const Enclosure whole = closure.enclose(increments);
+    Enclosure result{std::vector<Interval>(n), IntervalMatrix(n, n)};
+    for (int i = 0; i < n; ++i) {
+      result.values[i] = whole.values[rows[i]];
+      for (int j = 0; j < n; ++j) result.jacobian(i, j) = whole.jacobian(rows[i], unknown[j]);
+    }
+    return result;
+  };
+  const ModeCertificate certificate = prove_root(n, enclose);
+  // The rows that vanish were looked at within kNear only.
+  return certificate.radius < kNear ? certificate : ModeCertificate{};
+}
+
+}  // namespace polyglide

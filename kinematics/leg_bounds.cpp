@@ -1,0 +1,291 @@
+#include "kinematics/leg_bounds.hpp"
+
+#include "kinematics/interval_rotation.hpp"
+#include "kinematics/limits.hpp"
+
+namespace polyglide {
+namespace {
+
+constexpr double kSlack = 1e-9;  // [m, rad] as in LegKernel: a pose on its limit is allowed
+
+const Interval kAnything(-std::numeric_limits<double>::infinity(),
+                         std::numeric_limits<double>::infinity());
+
+double infinity() { return std::numeric_limits<double>::infinity(); }
+
+}  // namespace
+
+/// What the rotation of a box makes of the machine.
+struct LegBounds::Turned {
+  IntervalRotation rotation;
+  std::array<IntervalVector, 3> axes;  // about which the angles a, b, c turn
+  std::array<bool, 3> varies{};
+};
+
+std::size_t LegBounds::add(const std::string& name) {
+  names_.push_back(name);
+  return names_.size() - 1;
+}
+
+void LegBounds::add_row(const Machine& machine, int index,
+                        const std::vector<std::string>& ignored) {
+  const Mechanism& mechanism = machine.model.mechanism;
+  Row row;
+  row.leg = machine.legs->legs[index];
+  row.primary = machine.legs->primary[row.leg.drive] == index;
+  const IntervalVector p = vector_of(row.leg.platform_point), b = vector_of(row.leg.base_point);
+  for (int i = 0; i < 3; ++i) {
+    row.arm[i] = p[i] - tool_[i];
+    row.base[i] = b[i] - tool_[i];
+  }
+  row.length = root(squared_norm({p[0] - b[0], p[1] - b[1], p[2] - b[2]}));
+  row.reach = add("reach " + mechanism.bodies[leg_body(mechanism, row.leg)]);
+  if (row.primary) {
+    const int joint = machine.model.freedoms[machine.model.drives[row.leg.drive]].joint;
+    const std::string stroke = "stroke " + mechanism.joints[joint].name;
+    if (std::isfinite(row.leg.stroke.min) && !is_ignored(stroke + " min", ignored))
+      row.min = add(stroke + " min");
+    if (std::isfinite(row.leg.stroke.max) && !is_ignored(stroke + " max", ignored))
+      row.max = add(stroke + " max");
+  }
+  for (const bool on_platform : {false, true}) {
+    const Joint& joint =
+        mechanism.joints[on_platform ? row.leg.platform_joint : row.leg.base_joint];
+    if (!joint.cone || is_ignored("cone " + joint.name, ignored)) continue;
+    const bool along = joint.cone_axis.dot(row.leg.platform_point - row.leg.base_point) >= 0;
+    row.cones.push_back({add("cone " + joint.name), on_platform,
+                         along ? joint.cone_axis : Vector3(-joint.cone_axis),
+                         cosine(Interval(std::min(M_PI, *joint.cone + kSlack)))});
+  }
+  rows_.push_back(std::move(row));
+}
+
+void LegBounds::add_planes(const Machine& machine, const std::vector<std::string>& ignored) {
+  const Mechanism& mechanism = machine.model.mechanism;
+  for (const HalfSpaceLimit& limit : mechanism.limits) {
+    if (is_ignored(limit.name, ignored)) continue;
+    const int leg = carriage_leg(mechanism, *machine.legs, limit.body);
+    for (const HalfSpaceLimit::Plane& plane : limit.planes)
+      for (const Vector3& point : limit.points) {
+        Plane check{add(limit.name),
+                    plane.normal,
+                    Interval(plane.offset) + kSlack,
+                    limit.body == mechanism.platform,
+                    Vector3(point - tool_),
+                    -1,
+                    Interval(0.0)};
+        check.offset -= check.on_platform ? dot(plane.normal, tool_) : dot(plane.normal, point);
+        if (leg >= 0) {
+          check.drive = machine.legs->legs[leg].drive;
+          check.slope = dot(plane.normal, machine.legs->legs[leg].direction);
+        }
+        planes_.push_back(check);
+      }
+  }
+}
+
+std::optional<LegBounds> LegBounds::make(const Machine& machine,
+                                         const std::vector<std::string>& ignored,
+                                         const Eigen::Quaterniond& fixed, bool turning) {
+  if (!machine.legs || !machine.task.pure) return std::nullopt;
+  LegBounds result;
+  result.tool_ = machine.model.mechanism.tool;
+  result.fixed_ = fixed;
+  result.axes_ = machine.task.axes;
+  result.drives_ = static_cast<int>(machine.model.drives.size());
+  result.characteristic_length_ = machine.task.characteristic_length;
+  const LegMachine& legs = *machine.legs;
+  for (int i = 0; i < static_cast<int>(legs.legs.size()); ++i) {
+    const Leg &leg = legs.legs[i], &first = legs.legs[legs.primary[leg.drive]];
+    // A second rod of a carriage must be the parallel of the first, turned by whatever the machine
+    // can turn, else what both ask of the carriage is an equation.
+    const Vector3 beside = leg.platform_point - first.platform_point;
+    const Vector3 apart = fixed * beside - (leg.base_point - first.base_point);
+    bool same = leg.kind == first.kind && std::abs(leg.length - first.length) < 1e-9 &&
+                leg.side == first.side && apart.norm() < 1e-9;
+    for (int axis : machine.task.axes)
+      same = same && (!turning || axis < 3 ||
+                      beside.cross(Vector3::Unit(axis - 3)).norm() < 1e-9 * beside.norm());
+    if (&leg != &first && !same) return std::nullopt;
+    // What repeats and carries no cone says nothing new.
+    const auto& joints = machine.model.mechanism.joints;
+    if (&leg != &first && !joints[leg.base_joint].cone && !joints[leg.platform_joint].cone)
+      continue;
+    result.add_row(machine, i, ignored);
+  }
+  std::stable_partition(result.rows_.begin(), result.rows_.end(),
+                        [](const Row& row) { return row.primary; });
+  result.add_planes(machine, ignored);
+  if (result.names_.size() > kMost) return std::nullopt;
+  return result;
+}
+
+LegBounds::Turned LegBounds::turn(const PoseBox& box) const {
+  const IntervalVector x = vector_of(Vector3::UnitX()), y = vector_of(Vector3::UnitY()),
+                       z = vector_of(Vector3::UnitZ());
+  Turned result;
+  bool turns = false;
+  for (int i = 0; i < 3; ++i) {
+    result.varies[i] = magnitude(box[3 + i]) > 0;
+    turns = turns || result.varies[i];
+  }
+  const bool as_at_home = fixed_.vec().isZero(0);
+  const IntervalRotation fixed = as_at_home ? no_rotation() : rotation_of(fixed_);
+  if (!turns) {
+    result.rotation = fixed;
+    result.axes = {x, y, z};
+    return result;
+  }
+  const IntervalRotation rz = rotation_about(z, box[5]);
+  const IntervalRotation zy = product(rz, rotation_about(y, box[4]));
+  result.axes = {turned(zy, x), turned(rz, y), z};
+  result.rotation = product(product(zy, rotation_about(x, box[3])), fixed);
+  return result;
+}
+
+LegBounds::Drive LegBounds::solve(const Row& row, const PoseBox& box, const Turned& turn,
+                                  const Mask& wanted, std::vector<LimitBound>* bounds) const {
+  Drive drive;
+  drive.arm = turned(turn.rotation, row.arm);
+  IntervalVector v;
+  for (int i = 0; i < 3; ++i) v[i] = drive.arm[i] + box[i] - row.base[i];
+  std::array<IntervalVector, 3> swing;
+  for (int k = 0; k < 3; ++k)
+    if (turn.varies[k]) swing[k] = cross(turn.axes[k], drive.arm);
+  /// Fills a limit from its value and its derivative by v.
+  const auto set = [&](std::size_t limit, const Interval& value, const IntervalVector& by_v) {
+    LimitBound& bound = (*bounds)[limit];
+    bound.value = value;
+    for (int i = 0; i < 3; ++i) bound.gradient[i] = by_v[i];
+    for (int k = 0; k < 3; ++k)
+      bound.gradient[3 + k] = turn.varies[k] ? dot(by_v, swing[k]) : Interval(0.0);
+  };
+  const auto asked = [&](std::size_t limit) {
+    return bounds != nullptr && limit < kMost && wanted[limit];
+  };
+
+  const Vector3& g = row.leg.direction;
+  IntervalVector rod;  // from base to platform
+  Interval rise(0.0);
+  IntervalVector across;
+  if (row.leg.kind == Leg::Kind::guide_rod) {
+    const Interval along = dot(v, g);
+    for (int i = 0; i < 3; ++i) across[i] = v[i] - along * g[i];
+    const Interval left = square(row.length) - squared_norm(across);
+    rise = row.leg.side * root(left);
+    if (asked(row.reach)) {
+      set(row.reach, -left, {2.0 * across[0], 2.0 * across[1], 2.0 * across[2]});
+    }
+    drive.place = along + rise;
+    const bool smooth = left.lower() > 0;
+    for (int i = 0; i < 3; ++i) {
+      drive.row[i] = smooth ? g[i] - across[i] / rise : kAnything;
+      rod[i] = across[i] - rise * g[i];
+      drive.along[i] = -row.leg.side * rod[i] / row.length;
+    }
+  } else {
+    const Interval distance = root(squared_norm(v));
+    if (asked(row.reach)) set(row.reach, -distance, {kAnything, kAnything, kAnything});
+    drive.place = distance - row.length;
+    for (int i = 0; i < 3; ++i) {
+      drive.row[i] = distance.lower() > 0 ? common(v[i] / distance, Interval(-1, 1)) : kAnything;
+      rod[i] = v[i];
+      drive.along[i] = v[i] / row.length;
+    }
+  }
+  if (asked(row.min)) {
+    set(row.min, (row.leg.stroke.min - Interval(kSlack)) - drive.place,
+        {-drive.row[0], -drive.row[1], -drive.row[2]});
+  }
+  if (asked(row.max))
+    set(row.max, drive.place - (row.leg.stroke.max + Interval(kSlack)), drive.row);
+
+  for (const Cone& cone : row.cones) {
+    if (!asked(cone.limit)) continue;
+    IntervalVector axis = vector_of(cone.axis);
+    if (cone.on_platform) axis = turned(turn.rotation, axis);
+    // cos(limit)·|rod| - axis·rod <= 0.
+    IntervalVector by_v;
+    Interval value;
+    if (row.leg.kind == Leg::Kind::guide_rod) {
+      value = cone.cosine * row.length - dot(axis, rod);
+      const Interval lean = dot(axis, g);
+      for (int i = 0; i < 3; ++i) {
+        const bool smooth = drive.row[i].upper() < infinity();
+        by_v[i] = smooth ? -(axis[i] - lean * drive.row[i]) : kAnything;
+      }
+    } else {
+      value = cone.cosine * (drive.place + row.length) - dot(axis, rod);
+      for (int i = 0; i < 3; ++i) by_v[i] = cone.cosine * drive.row[i] - axis[i];
+    }
+    set(cone.limit, value, by_v);
+    if (!cone.on_platform) continue;
+    for (int k = 0; k < 3; ++k)
+      if (turn.varies[k])
+        (*bounds)[cone.limit].gradient[3 + k] -= dot(cross(turn.axes[k], axis), rod);
+  }
+  return drive;
+}
+
+void LegBounds::enclose(const PoseBox& box, const Mask& wanted,
+                        std::vector<LimitBound>& bounds) const {
+  bounds.resize(names_.size());
+  const Turned turning = turn(box);
+  std::vector<std::pair<bool, Drive>> drives(drives_);
+  const auto drive_needed = [&](int d) {
+    return std::any_of(planes_.begin(), planes_.end(),
+                       [&](const Plane& plane) { return plane.drive == d && wanted[plane.limit]; });
+  };
+  for (const Row& row : rows_) {
+    bool needed = wanted[row.reach] || (row.min < kMost && wanted[row.min]) ||
+                  (row.max < kMost && wanted[row.max]) ||
+                  (row.primary && drive_needed(row.leg.drive));
+    for (const Cone& cone : row.cones) needed = needed || wanted[cone.limit];
+    if (!needed) continue;
+    Drive drive = solve(row, box, turning, wanted, &bounds);
+    if (row.primary) drives[row.leg.drive] = {true, drive};
+  }
+  for (const Plane& plane : planes_) {
+    if (!wanted[plane.limit]) continue;
+    LimitBound& bound = bounds[plane.limit];
+    bound.value = -plane.offset;
+    bound.gradient.fill(Interval(0.0));
+    if (plane.on_platform) {
+      const IntervalVector arm = turned(turning.rotation, vector_of(plane.arm));
+      const IntervalVector normal = vector_of(plane.normal);
+      bound.value += dot(normal, arm) + dot(normal, IntervalVector{box[0], box[1], box[2]});
+      for (int i = 0; i < 3; ++i) bound.gradient[i] = normal[i];
+      for (int k = 0; k < 3; ++k)
+        if (turning.varies[k]) bound.gradient[3 + k] = dot(normal, cross(turning.axes[k], arm));
+    } else if (plane.drive >= 0) {
+      const Drive& drive = drives[plane.drive].second;
+      bound.value += plane.slope * drive.place;
+      for (int i = 0; i < 3; ++i) bound.gradient[i] = plane.slope * drive.row[i];
+      for (int k = 0; k < 3; ++k)
+        if (turning.varies[k])
+          bound.gradient[3 + k] = plane.slope * dot(drive.row, cross(turning.axes[k], drive.arm));
+    }
+  }
+}
+
+IntervalMatrix LegBounds::jacobian(const PoseBox& box) const { return matrix(box, false); }
+
+IntervalMatrix LegBounds::rod_rows(const PoseBox& box) const { return matrix(box, true); }
+
+IntervalMatrix LegBounds::matrix(const PoseBox& box, bool scaled) const {
+  const int n = static_cast<int>(axes_.size());
+  IntervalMatrix result(drives_, n);
+  const Turned turning = turn(box);
+  for (const Row& row : rows_) {
+    if (!row.primary) continue;
+    const Drive drive = solve(row, box, turning, {}, nullptr);
+    const IntervalVector& force = scaled ? drive.along : drive.row;
+    const IntervalVector moment = cross(drive.arm, force);
+    for (int k = 0; k < n; ++k)
+      result(row.leg.drive, k) =
+          axes_[k] < 3 ? force[axes_[k]] : moment[axes_[k] - 3] / characteristic_length_;
+  }
+  return result;
+}
+
+}  // namespace polyglide

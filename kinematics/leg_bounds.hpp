@@ -1,0 +1,105 @@
+#pragma once
+
+#include <bitset>
+#include <string>
+
+#include "kinematics/interval_matrix.hpp"
+#include "kinematics/solve.hpp"
+
+namespace polyglide {
+
+/// Task coordinates [x y z a b c] from home, each a range [m, rad]; rotation Rz(c)·Ry(b)·Rx(a).
+using PoseBox = std::array<Interval, 6>;
+
+/// One limit as "value <= 0 is allowed", on a box of poses. Scale as the limit's own [m, m²].
+struct LimitBound {
+  Interval value;
+  std::array<Interval, 6> gradient;  ///< by the six coordinates; not finite where not smooth
+};
+
+/// The limits and the Jacobian of a leg machine, enclosed on boxes of poses. The same
+/// definitions as LegKernel's, 1e-9 of slack included. Needs UpwardRounding.
+///
+/// Gradients are closed forms: with v from a rod's carriage joint at home to its platform joint, p
+/// its part across the guide g, h = sqrt(L² - p²): the drive is v·g + side·h and changes with g -
+/// side·p/h; v changes with t, and with the angles by w × arm.
+class LegBounds {
+ public:
+  static constexpr std::size_t kMost = 256;
+  using Mask = std::bitset<kMost>;
+
+  /// nullopt for machines without closed form, or whose rods must agree about a carriage in a way
+  /// that intervals cannot prove, or with more than kMost limits.
+  /// @param fixed applied before the box's rotation.
+  /// @param turning whether boxes with other angles than zero will be asked.
+  [[nodiscard]] static std::optional<LegBounds> make(const Machine& machine,
+                                                     const std::vector<std::string>& ignored,
+                                                     const Eigen::Quaterniond& fixed, bool turning);
+
+  [[nodiscard]] std::size_t size() const { return names_.size(); }
+  /// Name of limit i, as Evaluator's: several may share one.
+  [[nodiscard]] const std::string& name(std::size_t i) const { return names_[i]; }
+
+  /// Encloses the limits in `wanted`; the others are left as they are.
+  void enclose(const PoseBox& box, const Mask& wanted, std::vector<LimitBound>& bounds) const;
+
+  /// Task Jacobian, drives × task axes, rotations per characteristic length. Entries are unbounded
+  /// where a rod may be at the end of its reach.
+  [[nodiscard]] IntervalMatrix jacobian(const PoseBox& box) const;
+
+  /// The Jacobian with every rod's row multiplied by a positive number, so that it stays bounded at
+  /// the end of the rod's reach: same rank, same sign of the determinant inside the reach.
+  [[nodiscard]] IntervalMatrix rod_rows(const PoseBox& box) const;
+
+ private:
+  struct Cone {
+    std::size_t limit;
+    bool on_platform;
+    Vector3 axis;
+    Interval cosine;
+  };
+  struct Row {
+    Leg leg;
+    bool primary;
+    IntervalVector arm, base;  // arm from the tool, base joint from the tool
+    Interval length;
+    std::size_t reach = 0, min = kMost, max = kMost;
+    std::vector<Cone> cones;
+  };
+  struct Plane {
+    std::size_t limit;
+    Vector3 normal;
+    Interval offset;  // of the plane, without what the point adds
+    bool on_platform;
+    Vector3 arm;  // point from the tool
+    int drive = -1;
+    Interval slope;
+  };
+  struct Turned;
+  struct Drive {
+    Interval place;
+    IntervalVector row;    // derivative of place by the joint's position
+    IntervalVector along;  // the same times a positive number, always bounded
+    IntervalVector arm;
+  };
+
+  LegBounds() = default;
+  std::size_t add(const std::string& name);
+  void add_row(const Machine& machine, int index, const std::vector<std::string>& ignored);
+  void add_planes(const Machine& machine, const std::vector<std::string>& ignored);
+  [[nodiscard]] Turned turn(const PoseBox& box) const;
+  IntervalMatrix matrix(const PoseBox& box, bool scaled) const;
+  Drive solve(const Row& row, const PoseBox& box, const Turned& turned, const Mask& wanted,
+              std::vector<LimitBound>* bounds) const;
+
+  std::vector<std::string> names_;
+  std::vector<Row> rows_;
+  std::vector<Plane> planes_;
+  Vector3 tool_ = Vector3::Zero();
+  Eigen::Quaterniond fixed_ = Eigen::Quaterniond::Identity();
+  std::vector<int> axes_;
+  int drives_ = 0;
+  double characteristic_length_ = 1;
+};
+
+}  // namespace polyglide

@@ -1,0 +1,121 @@
+#include "kinematics/certified_volume.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <chrono>
+
+#include "kinematics/region_measure.hpp"
+#include "machines.hpp"
+
+namespace polyglide {
+namespace {
+
+using namespace polyglide::fixtures;
+
+std::optional<CertifiedVolume> proved(const Machine& machine, double tolerance,
+                                      const std::vector<std::string>& ignored = {},
+                                      int budget = 1000000) {
+  const Evaluator evaluator(machine, ignored);
+  const Probe probe(evaluator, Eigen::Quaterniond::Identity());
+  const auto start = std::chrono::steady_clock::now();
+  const auto result = certify_volume(evaluator.machine(), ignored, Eigen::Quaterniond::Identity(),
+                                     search_bounds(probe), tolerance, budget);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (result)
+    std::printf("%s: %.6g to %.6g, %.3g %%, %d cells, %.3f s\n",
+                machine.model.mechanism.name.c_str(), result->lower, result->upper,
+                100 * (1 - result->lower / result->upper), result->cells, seconds);
+  return result;
+}
+
+TEST(CertifiedVolume, OfDeltaOneIsKnownToAThousandth) {
+  const auto dut = proved(catalog_machine("delta-1"), 1e-3);
+  ASSERT_TRUE(dut);
+  EXPECT_TRUE(dut->reached);
+  EXPECT_LE(dut->upper - dut->lower, 1e-3 * dut->upper);
+  EXPECT_NEAR(dut->lower, 10.007e-3, 0.002 * 10.007e-3);
+  const auto wider = proved(catalog_machine("delta-1"), 1e-3, {"triangle"});
+  ASSERT_TRUE(wider);
+  EXPECT_NEAR(wider->lower, 12.010e-3, 0.002 * 12.010e-3);
+  EXPECT_GT(wider->lower, dut->upper);
+}
+
+TEST(CertifiedVolume, EnclosesTheClosedFormOfALinearDelta) {
+  const auto expected = truth()["linear_delta_vertical_e0.25_L1.0_H1.5"]["value"].get<double>();
+  const Machine machine = prepare(linear_delta(0.25, 1, 1.5, 0), task_of({0, 1, 2}));
+  for (double tolerance : {1e-1, 1e-2, 2e-3}) {
+    const auto dut = proved(machine, tolerance);
+    ASSERT_TRUE(dut);
+    EXPECT_LE(dut->lower, expected);
+    EXPECT_GE(dut->upper, expected);
+    EXPECT_TRUE(dut->reached);
+  }
+}
+
+TEST(CertifiedVolume, EnclosesTheVolumeOfAPrism) {
+  // Planes are exact: the bounds close at once, and they close around the truth, slack of the
+  // limits (1e-9 m) included.
+  const Machine machine = prism({{Vector3::UnitX(), 0.3},
+                                 {-Vector3::UnitX(), 0.1},
+                                 {Vector3::UnitY(), 0.2},
+                                 {-Vector3::UnitY(), 0.2},
+                                 {Vector3(1, 0, 1).normalized(), 0.15},
+                                 {-Vector3::UnitZ(), 0.05}});
+  // z <= 0.15 √2 - x over x in [-0.1, 0.3], with z >= -0.05 where that is less than nothing.
+  const double top = 0.15 * std::sqrt(2.0) + 0.05, from = -0.1, to = std::min(0.3, top);
+  const double expected = 0.4 * (top * (to - from) - (to * to - from * from) / 2);
+  const auto dut = proved(machine, 1e-3);
+  ASSERT_TRUE(dut);
+  EXPECT_LE(dut->lower, expected * (1 + 1e-7));
+  EXPECT_GE(dut->upper, expected * (1 - 1e-7));
+}
+
+TEST(CertifiedVolume, HoldsWhatSamplingFindsOnCatalogMachines) {
+  for (const char* name : {"tripod-70", "hexapod-6ups", "table1-2", "table1-6"}) {
+    const Machine machine = catalog_machine(name);
+    const auto dut = proved(machine, 2e-2, {}, 60000);
+    if (!dut) {
+      std::printf("%s: none\n", name);
+      continue;
+    }
+    const Evaluator evaluator(machine);
+    Probe probe(evaluator, Eigen::Quaterniond::Identity());
+    const RegionFineness fineness = region_fineness(5e-3, true);
+    const Region region = explore(probe, fineness.nodes);
+    const double sampled = measure_region(probe, region, fineness, 5e-3).value;
+    EXPECT_LE(dut->lower, sampled * 1.01) << name;
+    EXPECT_GE(dut->upper, sampled * 0.99) << name;
+    EXPECT_GT(dut->lower, 0) << name;
+  }
+}
+
+TEST(CertifiedVolume, ABudgetTooSmallLeavesWideBounds) {
+  const auto dut = proved(catalog_machine("delta-1"), 1e-4, {}, 3000);
+  ASSERT_TRUE(dut);
+  EXPECT_FALSE(dut->reached);
+  EXPECT_LT(dut->lower, 10.007e-3);
+  EXPECT_GT(dut->upper, 10.007e-3);
+}
+
+TEST(CertifiedVolume, IsTheSameForAnyNumberOfThreads) {
+  const Machine machine = catalog_machine("delta-1");
+  const auto two = proved(machine, 1e-2);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const auto alone = proved(machine, 1e-2);
+  ASSERT_TRUE(two && alone);
+  EXPECT_EQ(two->lower, alone->lower);
+  EXPECT_EQ(two->upper, alone->upper);
+}
+
+TEST(CertifiedVolume, ProvesNothingWithoutClosedFormOrBounds) {
+  EXPECT_FALSE(proved(catalog_machine("3-rps"), 1e-2));     // parasitic motion
+  EXPECT_FALSE(proved(catalog_machine("four-bar"), 1e-2));  // no volume
+  // Everything forbidden: nothing to enclose.
+  const Machine machine = prism({{Vector3::UnitX(), -0.2}, {-Vector3::UnitX(), 0.1}});
+  EXPECT_FALSE(proved(machine, 1e-2));
+}
+
+}  // namespace
+}  // namespace polyglide
