@@ -87,6 +87,7 @@ std::vector<ForwardSolution> gather(const Model& model, const AssemblySearch& se
                                     int round, Completeness& completeness, const Start& start) {
   std::vector<ForwardSolution> modes;
   std::vector<int> hits;
+  bool scattered = false;
   while (completeness.starts < most) {
     std::vector<Found> found(static_cast<std::size_t>(std::min(round, most - completeness.starts)));
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
@@ -110,6 +111,10 @@ std::vector<ForwardSolution> gather(const Model& model, const AssemblySearch& se
     }
     completeness.rarest_hits = hits.empty() ? 0 : *std::min_element(hits.begin(), hits.end());
     if (completeness.rarest_hits >= search.hits) break;
+    // A continuum: nearly every start ends somewhere else.
+    scattered =
+        completeness.hits >= 60 && 2 * std::count(hits.begin(), hits.end(), 1) > completeness.hits;
+    if (scattered) break;
     if (completeness.bound > 0 && static_cast<int>(modes.size()) >= completeness.bound) break;
   }
   const auto once = std::count(hits.begin(), hits.end(), 1);
@@ -117,7 +122,10 @@ std::vector<ForwardSolution> gather(const Model& model, const AssemblySearch& se
   if (completeness.hits > 0)
     completeness.unseen =
         std::max(1.0, static_cast<double>(once)) / static_cast<double>(completeness.hits);
-  if (completeness.rarest_hits >= search.hits)
+  if (scattered)
+    completeness.stopped =
+        "nearly every start had ended elsewhere: the drives do not hold the platform";
+  else if (completeness.rarest_hits >= search.hits)
     completeness.stopped = fmt::format("every mode was met {} times or more", search.hits);
   else if (completeness.bound > 0 && static_cast<int>(modes.size()) >= completeness.bound)
     completeness.stopped = "as many modes as such a machine can have";

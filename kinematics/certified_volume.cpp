@@ -86,7 +86,8 @@ class Octree {
       const auto [lower, upper] = sums();
       if (upper <= 0) return std::nullopt;
       if (upper - lower <= kRoom * tolerance * upper || examined_ >= budget) break;
-      split_widest(upper - lower - kRoom / 2 * tolerance * upper);
+      const double gap = upper - lower;
+      split_widest(std::max(gap - kRoom * tolerance * upper, gap / 8));
     }
     if (!bound_part(result)) return std::nullopt;
     result.cells = examined_;

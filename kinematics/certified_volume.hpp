@@ -26,6 +26,6 @@ struct CertifiedVolume {
                                                             const std::vector<std::string>& ignored,
                                                             const Eigen::Quaterniond& rotation,
                                                             const Bounds& box, double tolerance,
-                                                            int budget = 1000000);
+                                                            int budget = 600000);
 
 }  // namespace polyglide

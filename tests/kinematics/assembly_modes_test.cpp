@@ -317,6 +317,14 @@ TEST(AssemblyModes, ASingularModeIsNotCertified) {
   EXPECT_FALSE(dut.completeness.complete);
 }
 
+TEST(AssemblyModes, DrivesThatDoNotHoldThePlatformAreNamed) {
+  const AssemblyModes dut =
+      find_assembly_modes(catalog_machine("table1-2"), Eigen::Vector4d(1e-3, 0, 0, 0));
+  EXPECT_NE(dut.completeness.stopped.find("do not hold the platform"), std::string::npos);
+  EXPECT_FALSE(dut.completeness.complete);
+  for (const ForwardSolution& mode : dut.solutions) EXPECT_FALSE(mode.certified);
+}
+
 TEST(AssemblyModes, RefuseDrivesThatAreNoNumbers) {
   const Machine machine = prepare(linear_delta(0.3, 1, 2, 0), task_of({0, 1, 2}));
   EXPECT_THROW(static_cast<void>(find_assembly_modes(machine, Eigen::VectorXd::Zero(2))),
