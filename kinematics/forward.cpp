@@ -39,6 +39,11 @@ std::optional<std::vector<Sphere>> leg_spheres(const Machine& machine,
     const double q = drives[leg.drive];
     if (leg.kind == Leg::Kind::strut)
       spheres.push_back({leg.base_point - leg.platform_point, leg.length + q});
+    else if (leg.kind == Leg::Kind::crank_rod)
+      spheres.push_back({leg.centre +
+                             Eigen::AngleAxisd(q, leg.direction) * (leg.base_point - leg.centre) -
+                             leg.platform_point,
+                         leg.length});
     else
       spheres.push_back({leg.base_point + q * leg.direction - leg.platform_point, leg.length});
   }
