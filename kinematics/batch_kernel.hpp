@@ -309,17 +309,14 @@ inline V determinant_of_rows(const KernelModel& model, const Pack<V>& pack) {
   return determinant_of<V, N>(square);
 }
 
-/// Again without loss of digits, for the lanes that need it.
+/// The squares of the singular values without loss of digits, for the lanes that need it.
 template <class V>
-[[gnu::noinline]] void repair(const KernelModel& model, const Pack<V>& pack,
-                              simd::Extremes<V>& found) {
+[[gnu::noinline]] simd::Spectrum<V> careful_spectrum(const KernelModel& model,
+                                                     const Pack<V>& pack) {
   V columns[6][kMostDrives];
   for (int k = 0; k < model.columns; ++k)
     for (int d = 0; d < model.drives; ++d) columns[k][d] = pack.rows[d][model.axes[k]];
-  const auto exact =
-      simd::one_sided_jacobi<V, kMostDrives, 6>(columns, model.drives, model.columns);
-  found.least = select(found.doubtful, exact.least, found.least);
-  found.greatest = select(found.doubtful, exact.greatest, found.greatest);
+  return simd::one_sided_jacobi<V, kMostDrives, 6>(columns, model.drives, model.columns);
 }
 
 template <class V, int N>
@@ -334,37 +331,67 @@ inline simd::Extremes<V> extremes_of(const KernelModel& model, const Pack<V>& pa
     found = simd::extremes3<V>(gram, square ? det * det : determinant_of<V, N>(gram));
   if constexpr (N > 3) found = simd::extremes<V, N>(gram);
   found.doubtful = MaskOf<V>(found.doubtful & (pack.limit < V(0)));
-  if (any(found.doubtful)) repair<V>(model, pack, found);
+  if (any(found.doubtful)) {
+    const simd::Spectrum<V> careful = careful_spectrum<V>(model, pack);
+    found.least = select(found.doubtful, careful.least, found.least);
+    found.greatest = select(found.doubtful, careful.greatest, found.greatest);
+  }
   return found;
 }
 
-/// least of cos μ over legs: at the drive, 1/(|force| lever), and at the platform,
+/// 1/κ_F from the factors of JᵀJ, and with care where they have lost digits.
+template <class V, int N>
+inline V frobenius_of(const KernelModel& model, const Pack<V>& pack, const V (&gram)[N][N]) {
+  V factors[N][N];
+  V trace(0);
+#pragma GCC unroll 8
+  for (int k = 0; k < N; ++k) {
+    trace = trace + gram[k][k];
+#pragma GCC unroll 8
+    for (int l = 0; l <= k; ++l) factors[k][l] = gram[k][l];
+  }
+  const auto definite = simd::factorise<V, N>(factors);
+  const V inverse = V(double(N)) / sqrt(trace * simd::trace_of_inverse<V, N>(factors));
+  const auto doubtful =
+      MaskOf<V>((pack.limit < V(0)) & !MaskOf<V>(definite & (inverse >= V(1e-3))));
+  if (!any(doubtful)) return inverse;
+  const simd::Spectrum<V> careful = careful_spectrum<V>(model, pack);
+  return select(doubtful, V(double(N)) / sqrt(careful.sum * careful.sum_of_inverses), inverse);
+}
+
+/// Least of cos μ over legs: at the drive, 1/(|force| lever), and at the platform,
 /// 1/(|force| |velocity of the joint when only this drive moves|).
 template <class V, int N>
-inline V transmission_of(const KernelModel& model, const Pack<V>& pack, const V (&factors)[N][N]) {
-  V least(1);
+[[gnu::noinline]] V transmission_of(const KernelModel& model, const Pack<V>& pack) {
+  const bool square = model.drives == N;
+  V rows[N][N], inverse[N][N];
+  if (square) {
+    for (int d = 0; d < N; ++d)
+      for (int k = 0; k < N; ++k) rows[d][k] = entry<V, N>(model, pack, d, k);
+    simd::invert<V, N>(rows, inverse);
+  }
+  V least(1), sum(0);
   for (int d = 0; d < model.drives; ++d) {
     const V* row = pack.rows[d];
     const V force2 = row[0] * row[0] + row[1] * row[1] + row[2] * row[2];
-    const V lever(model.lever[d]);
-    V most = lever * lever;
-    if (model.drives == N) {
-      V x[N], twist[6]{V(0), V(0), V(0), V(0), V(0), V(0)};
-#pragma GCC unroll 8
-      for (int k = 0; k < N; ++k) x[k] = entry<V, N>(model, pack, d, k);
-      simd::solve_factorised<V, N>(factors, x);
-      for (int k = 0; k < N; ++k) twist[model.axes[k]] = x[k];
+    V most(model.lever[d] * model.lever[d]);
+    if (square) {
+      V twist[6]{V(0), V(0), V(0), V(0), V(0), V(0)};
+      for (int k = 0; k < N; ++k) twist[model.axes[k]] = inverse[k][d];
       Vec<V> velocity{twist[0], twist[1], twist[2]};
       if (model.moments) {
-        const V scale(model.scale);
-        const Vec<V> spin{twist[3] * scale, twist[4] * scale, twist[5] * scale};
+        const Vec<V> spin = scaled(Vec<V>{twist[3], twist[4], twist[5]}, V(model.scale));
         velocity = velocity + cross(spin, pack.arms[d]);
       }
-      most = max(most, dot(velocity, velocity));
+      const V speed2 = dot(velocity, velocity);
+      most = select(MaskOf<V>(most > speed2), most, speed2);
     }
     const V share = V(1) / (force2 * most);
-    least = select(MaskOf<V>(share < least), share, least);
+    least = min(least, share);
+    sum = sum + share;
   }
+  // A singular J, whose inverse is not finite, transmits nothing.
+  least = select(MaskOf<V>(sum - sum == V(0)), least, V(0));
   return sqrt(least);
 }
 
@@ -376,36 +403,23 @@ template <class V, int N>
   const auto put = [&](double* column, const V& value) {
     if (column) Lanes<V>::store(column + i, select(MaskOf<V>(good & (value > V(0))), value, V(0)));
   };
-  const bool square = model.drives == N;
+  const bool square = model.drives == N, enough = model.drives >= N;
   const bool singular = out.condition || out.smallest || out.softest || out.stiffest;
   V det(0);
   if (square && (out.orientation || (singular && N <= 3)))
     det = determinant_of_rows<V, N>(model, pack);
   if (out.orientation) Lanes<V>::store(out.orientation + i, select(good, det, V(0)));
-  const bool inverse = out.frobenius || out.transmission;
-  if (!singular && !inverse) return;
+  // Fewer drives than columns leave the platform a motion: the least singular value is 0.
+  const V least_factor(enough ? 1 : 0);
+  if (out.transmission) put(out.transmission, least_factor * transmission_of<V, N>(model, pack));
+  if (!singular && !out.frobenius) return;
 
   V gram[N][N];
   make_gram<V, N>(model, pack, gram);
-  if (inverse) {
-    V factors[N][N];
-    V trace(0);
-#pragma GCC unroll 8
-    for (int k = 0; k < N; ++k) {
-      trace = trace + gram[k][k];
-#pragma GCC unroll 8
-      for (int l = 0; l <= k; ++l) factors[k][l] = gram[k][l];
-    }
-    const auto definite = simd::factorise<V, N>(factors);
-    if (out.frobenius) {
-      const V both = trace * simd::trace_of_inverse<V, N>(factors);
-      put(out.frobenius, select(definite, V(double(N)) / sqrt(both), V(0)));
-    }
-    if (out.transmission)
-      put(out.transmission, select(definite, transmission_of<V, N>(model, pack, factors), V(0)));
-  }
+  if (out.frobenius) put(out.frobenius, least_factor * frobenius_of<V, N>(model, pack, gram));
   if (!singular) return;
-  const simd::Extremes<V> found = extremes_of<V, N>(model, pack, det, gram);
+  simd::Extremes<V> found = extremes_of<V, N>(model, pack, det, gram);
+  found.least = found.least * least_factor;
   if (out.condition)
     put(out.condition, min(V(1), sqrt(max(V(0), found.least) / (found.greatest + V(kTiny)))));
   if (out.smallest) put(out.smallest, sqrt(max(V(0), found.least)));
@@ -491,7 +505,7 @@ template <class V, int N>
 inline V leg_errors(const KernelModel& model, const Targets<V>& targets, const Guess<V>& guess,
                     V (&rows)[kMostDrives][6], V (&errors)[kMostDrives]) {
   const Rotation<V> rotation = rotation_of<V>(guess.w, guess.x, guess.y, guess.z);
-  V worst(0);
+  V worst(0), sum(0);
   for (int d = 0; d < model.drives; ++d) {
     const Vec<V> arm = rotation(targets.legs[d]->arm);
     const Vec<V> v = guess.t + targets.shift[d] + arm;
@@ -501,10 +515,12 @@ inline V leg_errors(const KernelModel& model, const Targets<V>& targets, const G
       const Vec<V> moment = scaled(cross(arm, v), V(model.scale));
       rows[d][3] = moment.x, rows[d][4] = moment.y, rows[d][5] = moment.z;
     }
-    // Not-a-number must win: keep `worst` only where it is surely the greater.
     const V error = abs(errors[d]) / (targets.square[d] + V(kTiny));
-    worst = select(MaskOf<V>(worst >= error), worst, error);
+    worst = max(worst, error);
+    sum = sum + error;
   }
+  // Not-a-number must win.
+  worst = select(MaskOf<V>(sum - sum == V(0)), worst, sum);
   return worst;
 }
 

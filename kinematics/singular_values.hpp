@@ -4,7 +4,7 @@
 
 /// Extreme singular values of small Jacobians, one per lane of V. The fast way takes
 /// the extreme eigenvalues of JᵀJ; lanes in which that loses digits (eigenvalues that
-/// nearly coincide, κ above 1e3) are `doubtful` and are to be done again by
+/// nearly coincide, κ above 300) are `doubtful` and are to be done again by
 /// one_sided_jacobi(), which keeps them all. Needs no memory but the stack.
 namespace polyglide::simd {
 
@@ -184,11 +184,17 @@ inline Extremes<V> extremes(V (&g)[N][N]) {
                     !(low.x >= V(kIllConditioned) * high.x))};
 }
 
-/// Squares of the extreme singular values of a matrix by one-sided Jacobi rotations of its
+/// Squares of all singular values, in short.
+template <class V>
+struct Spectrum {
+  V least, greatest, sum, sum_of_inverses;
+};
+
+/// Squares of the singular values of a matrix by one-sided Jacobi rotations of its
 /// columns (Hestenes 1958), eight sweeps: to rounding, whatever coincides. Runs in
 /// `columns`[column][row], which it destroys.
 template <class V, int kRows, int kColumns>
-[[gnu::noinline]] Extremes<V> one_sided_jacobi(V (&c)[kColumns][kRows], int rows, int columns) {
+[[gnu::noinline]] Spectrum<V> one_sided_jacobi(V (&c)[kColumns][kRows], int rows, int columns) {
   constexpr int kSweeps = 8;
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (int p = 0; p + 1 < columns; ++p)
@@ -209,12 +215,14 @@ template <class V, int kRows, int kColumns>
           c[q][i] = sine * first + cosine * second;
         }
       }
-  Extremes<V> found{V(0), V(0), V(0) > V(1)};
+  Spectrum<V> found{V(0), V(0), V(0), V(0)};
   for (int p = 0; p < columns; ++p) {
     V norm2(0);
     for (int i = 0; i < rows; ++i) norm2 = norm2 + c[p][i] * c[p][i];
     found.least = p == 0 ? norm2 : min(found.least, norm2);
     found.greatest = p == 0 ? norm2 : max(found.greatest, norm2);
+    found.sum = found.sum + norm2;
+    found.sum_of_inverses = found.sum_of_inverses + V(1) / (norm2 + V(kTiny));
   }
   return found;
 }
@@ -313,6 +321,42 @@ inline V determinant(V (&m)[N][N]) {
     }
   }
   return result;
+}
+
+/// Inverse by Gauss and Jordan's elimination with row exchanges; destroys the matrix. Not
+/// finite where the matrix is singular.
+template <class V, int N>
+inline void invert(V (&m)[N][N], V (&inverse)[N][N]) {
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i)
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) inverse[i][j] = V(i == j ? 1 : 0);
+  for (int k = 0; k < N; ++k) {
+    for (int i = k + 1; i < N; ++i) {
+      const auto larger = abs(m[i][k]) > abs(m[k][k]);
+#pragma GCC unroll 8
+      for (int j = 0; j < N; ++j) {
+        const V a = m[i][j], b = m[k][j], c = inverse[i][j], d = inverse[k][j];
+        m[k][j] = select(larger, a, b), m[i][j] = select(larger, b, a);
+        inverse[k][j] = select(larger, c, d), inverse[i][j] = select(larger, d, c);
+      }
+    }
+    const V factor = V(1) / m[k][k];
+#pragma GCC unroll 8
+    for (int j = 0; j < N; ++j) {
+      m[k][j] = m[k][j] * factor;
+      inverse[k][j] = inverse[k][j] * factor;
+    }
+    for (int i = 0; i < N; ++i) {
+      if (i == k) continue;
+      const V part = m[i][k];
+#pragma GCC unroll 8
+      for (int j = 0; j < N; ++j) {
+        m[i][j] = m[i][j] - part * m[k][j];
+        inverse[i][j] = inverse[i][j] - part * inverse[k][j];
+      }
+    }
+  }
 }
 
 }  // namespace polyglide::simd

@@ -73,21 +73,28 @@ PoseBatch poses_of(const Machine& machine, std::size_t count, double reach = 0.0
   return batch;
 }
 
-std::vector<std::pair<std::string, Machine>> leg_machines() {
-  std::vector<std::pair<std::string, Machine>> machines;
-  for (const Layout& layout : all_layouts()) {
-    Machine machine = prepare(expand(layout));
-    if (machine.legs && machine.task.pure) machines.emplace_back(layout.name, std::move(machine));
-  }
-  machines.emplace_back("rotary delta", prepare(rotary_delta(), task_of({0, 1, 2})));
+/// Every leg machine of the catalog, and one with cranks.
+const std::vector<std::pair<std::string, Machine>>& leg_machines() {
+  static const auto machines = [] {
+    std::vector<std::pair<std::string, Machine>> found;
+    for (const std::string& name : catalog_names()) {
+      const Mechanism mechanism = expand(find_layout(name));
+      if (!recognise_legs(compile(mechanism))) continue;
+      Machine machine = prepare(mechanism);
+      if (machine.task.pure) found.emplace_back(name, std::move(machine));
+    }
+    found.emplace_back("rotary delta", prepare(rotary_delta(), task_of({0, 1, 2})));
+    return found;
+  }();
   return machines;
 }
 
 void expect_close(const std::vector<double>& a, const std::vector<double>& b, double tolerance,
                   const std::string& what) {
   ASSERT_EQ(a.size(), b.size()) << what;
-  for (std::size_t i = 0; i < a.size(); ++i)
+  for (std::size_t i = 0; i < a.size(); ++i) {
     ASSERT_NEAR(a[i], b[i], tolerance * (1 + std::abs(b[i]))) << what << " at " << i;
+  }
 }
 
 /// One Jacobian of a batch.
@@ -117,10 +124,15 @@ TEST(Batch, EveryInstructionSetGivesTheNumbersOfTheScalarOne) {
       evaluator.evaluate(batch, other);
       EXPECT_EQ(scalar.limit, other.limit) << what;
       EXPECT_EQ(scalar.orientation, other.orientation) << what;
-      expect_close(other.inverse_condition, scalar.inverse_condition, 1e-12, what + " κ");
-      expect_close(other.frobenius, scalar.frobenius, 1e-12, what + " Frobenius");
-      expect_close(other.smallest, scalar.smallest, 1e-12, what + " σ");
-      expect_close(other.transmission, scalar.transmission, 1e-12, what + " μ");
+      for (std::size_t i = 0; i < batch.size(); ++i) {
+        // Near singular postures the rounding of J's own entries is magnified.
+        const double tolerance = scalar.inverse_condition[i] > 1e-3 ? 1e-12 : 1e-10;
+        ASSERT_NEAR(other.inverse_condition[i], scalar.inverse_condition[i], tolerance) << what;
+        ASSERT_NEAR(other.frobenius[i], scalar.frobenius[i], tolerance) << what;
+        ASSERT_NEAR(other.smallest[i], scalar.smallest[i], tolerance * (1 + scalar.smallest[i]))
+            << what;
+        ASSERT_NEAR(other.transmission[i], scalar.transmission[i], tolerance) << what;
+      }
       for (std::size_t i = 0; i < batch.size(); ++i) {
         if (scalar.limit[i] >= 0) continue;
         for (std::size_t d = 0; d < machine.model.drives.size(); ++d)
@@ -173,6 +185,10 @@ TEST(Batch, IndicesFollowFromTheJacobian) {
     for (std::size_t i = 0; i < batch.size(); ++i) {
       if (result.limit[i] >= 0) continue;
       const Eigen::MatrixXd j = jacobian_at(result, machine, i);
+      if (j.rows() < j.cols()) {  // drives too few: a motion is left
+        EXPECT_EQ(result.inverse_condition[i] + result.frobenius[i] + result.smallest[i], 0);
+        continue;
+      }
       const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(j).singularValues();
       const double least = s[s.size() - 1], greatest = s[0];
       EXPECT_NEAR(result.inverse_condition[i], least / greatest, 1e-9) << name;
@@ -335,6 +351,7 @@ TEST(Batch, ADeltaOfCranksReachesAndStopsWhereItsGeometrySays) {
 
 TEST(Batch, ForwardFindsThePosesThatInverseCameFrom) {
   for (const auto& [name, machine] : leg_machines()) {
+    if (machine.model.drives.size() < machine.task.axes.size()) continue;
     const Evaluator evaluator(machine);
     const PoseBatch batch = poses_of(machine, 203, 0.05, 0.1);
     BatchResult inverse;
