@@ -40,8 +40,8 @@ inline V cosine_of_two_thirds(const V& w) {
 }
 
 constexpr double kTiny = 1e-300;  // keeps 0/0 out of code without branches
-constexpr double kIllConditioned =
-    1e-8;  // least over greatest eigenvalue, below which JᵀJ is too rough
+// Least over greatest eigenvalue below which JᵀJ is too rough.
+constexpr double kIllConditioned = 1e-5;
 
 /// Eigenvalues of a symmetric 3×3 matrix whose determinant is known: the greatest is
 /// q + 2p cos(θ/3), r = cos θ (Smith 1961); with w = cos(θ/2) this is f(w). The other two

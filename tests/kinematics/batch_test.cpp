@@ -191,9 +191,11 @@ TEST(Batch, IndicesFollowFromTheJacobian) {
       }
       const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(j).singularValues();
       const double least = s[s.size() - 1], greatest = s[0];
-      EXPECT_NEAR(result.inverse_condition[i], least / greatest, 1e-9) << name;
-      EXPECT_NEAR(result.smallest[i] / least, 1, 1e-9) << name;
-      EXPECT_NEAR(result.softest[i] / (least * least), 1, 1e-9) << name;
+      ASSERT_NEAR(result.inverse_condition[i], least / greatest, 1e-9) << name << '\n' << j;
+      // table1-4 is all but singular: no way keeps more than 1e-14 of the greatest.
+      EXPECT_NEAR(result.smallest[i], least, 1e-9 * least + 1e-14 * greatest) << name;
+      EXPECT_NEAR(result.softest[i], least * least, 2e-9 * least * least + 1e-14 * greatest * least)
+          << name;
       EXPECT_NEAR(result.stiffest[i] / (greatest * greatest), 1, 1e-9) << name;
       const double n = static_cast<double>(j.cols());
       EXPECT_NEAR(result.frobenius[i], n / (s.norm() * s.cwiseInverse().norm()), 1e-9) << name;
@@ -356,6 +358,8 @@ TEST(Batch, ForwardFindsThePosesThatInverseCameFrom) {
     const PoseBatch batch = poses_of(machine, 203, 0.05, 0.1);
     BatchResult inverse;
     evaluator.evaluate(batch, inverse);
+    const auto& conditions = inverse.inverse_condition;
+    if (!(*std::max_element(conditions.begin(), conditions.end()) > 0.05)) continue;  // singular
     for (const batch::Kernel* kernel : batch::available_kernels()) {
       DriveBatch drives{batch.size(), inverse.drives, {}, kernel->name};
       ForwardResult forward;
