@@ -62,3 +62,24 @@ function(polyglide_add_floor name)
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/polyglide/${name}
           COMPONENT dev)
 endfunction()
+
+# polyglide_add_kernels(<floor> <stem>)
+#
+# Flags of <floor>/<stem>_<instruction set>.cpp, of which the program chooses one at run
+# time. The wide ones may contract a·b + c: their results differ from the scalar ones by
+# rounding. No precompiled header: it holds for one set of flags only.
+function(polyglide_add_kernels floor stem)
+  set(flags_scalar -O3)
+  set(flags_x86_64 -O3)
+  set(flags_v3 -O3 -ffp-contract=fast -march=x86-64-v3)
+  # GCC 12 warns of its own header of AVX-512 intrinsics.
+  set(flags_v4 -O3 -ffp-contract=fast -march=x86-64-v4 -Wno-maybe-uninitialized
+               -Wno-uninitialized)
+  foreach(kind IN ITEMS scalar x86_64 v3 v4)
+    set(source ${PROJECT_SOURCE_DIR}/${floor}/${stem}_${kind}.cpp)
+    set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    if(kind STREQUAL scalar OR CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "${flags_${kind}}")
+    endif()
+  endforeach()
+endfunction()

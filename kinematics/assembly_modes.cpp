@@ -43,6 +43,11 @@ std::optional<std::vector<Sphere>> leg_spheres(const Machine& machine,
     const double q = drives[leg.drive];
     if (leg.kind == Leg::Kind::strut)
       spheres.push_back({leg.base_point - leg.platform_point, leg.length + q});
+    else if (leg.kind == Leg::Kind::crank_rod)
+      spheres.push_back({leg.centre +
+                             Eigen::AngleAxisd(q, leg.direction) * (leg.base_point - leg.centre) -
+                             leg.platform_point,
+                         leg.length});
     else
       spheres.push_back({leg.base_point + q * leg.direction - leg.platform_point, leg.length});
   }
@@ -255,7 +260,7 @@ void check_drives(const Machine& machine, const Eigen::VectorXd& drives) {
 }  // namespace
 
 std::vector<int> distance_legs(const Machine& machine) {
-  if (!machine.legs || machine.legs->legs.size() != 6) return {};
+  if (!machine.legs || machine.legs->legs.size() != 6 || has_cranks(*machine.legs)) return {};
   std::vector<int> legs;
   for (int i = 0; i < 6; ++i) {
     const Leg& leg = machine.legs->legs[i];

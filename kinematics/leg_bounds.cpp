@@ -87,7 +87,7 @@ void LegBounds::add_planes(const Machine& machine, const std::vector<std::string
 std::optional<LegBounds> LegBounds::make(const Machine& machine,
                                          const std::vector<std::string>& ignored,
                                          const Eigen::Quaterniond& fixed, bool turning) {
-  if (!machine.legs || !machine.task.pure) return std::nullopt;
+  if (!machine.legs || !machine.task.pure || has_cranks(*machine.legs)) return std::nullopt;
   LegBounds result;
   result.tool_ = machine.model.mechanism.tool;
   result.fixed_ = fixed;

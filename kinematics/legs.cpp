@@ -18,6 +18,10 @@ bool is_drive(const Joint& joint) {
   return joint.type == JointType::prismatic && !joint.driven.empty();
 }
 
+bool is_crank(const Joint& joint) {
+  return joint.type == JointType::revolute && !joint.driven.empty();
+}
+
 /// Walks from the platform to the base, limb by limb, and ticks off every joint.
 class Recogniser {
  public:
@@ -73,7 +77,7 @@ class Recogniser {
     const int rod = other_body(platform_joint, mechanism_.platform);
     const int next = second_joint(rod, platform_joint);
     if (rod == mechanism_.base || next < 0) return std::nullopt;
-    if (turns_freely(mechanism_.joints[next])) return guide_leg(platform_joint, rod, next);
+    if (turns_freely(mechanism_.joints[next])) return rod_leg(platform_joint, rod, next);
     if (is_drive(mechanism_.joints[next])) return strut_leg(platform_joint, rod, next);
     return std::nullopt;
   }
@@ -92,18 +96,41 @@ class Recogniser {
     return leg;
   }
 
-  std::optional<Leg> guide_leg(int platform_joint, int rod, int carriage_joint) {
-    const int carriage = other_body(carriage_joint, rod);
-    int guide = -1;
-    for (int joint : joints_of_[carriage])
-      if (is_drive(mechanism_.joints[joint]) && other_body(joint, carriage) == mechanism_.base)
-        guide = guide < 0 ? joint : static_cast<int>(mechanism_.joints.size());
-    if (guide < 0 || guide == static_cast<int>(mechanism_.joints.size())) return std::nullopt;
-    Leg leg = leg_between(carriage_joint, platform_joint, guide);
+  /// The one drive between the base and a body that carries rods, -1 when there is none or
+  /// more than one.
+  int drive_from_base(int body) const {
+    int drive = -1;
+    for (int joint : joints_of_[body]) {
+      const Joint& data = mechanism_.joints[joint];
+      if ((!is_drive(data) && !is_crank(data)) || other_body(joint, body) != mechanism_.base)
+        continue;
+      if (drive >= 0) return -1;
+      drive = joint;
+    }
+    return drive;
+  }
+
+  std::optional<Leg> rod_leg(int platform_joint, int rod, int carriage_joint) {
+    const int drive = drive_from_base(other_body(carriage_joint, rod));
+    if (drive < 0) return std::nullopt;
+    Leg leg = leg_between(carriage_joint, platform_joint, drive);
     if (!(leg.length > 0)) return std::nullopt;
-    const Joint& joint = mechanism_.joints[guide];
+    const Joint& joint = mechanism_.joints[drive];
     leg.direction = joint.bodies[0] == mechanism_.base ? joint.axes[0] : Vector3(-joint.axes[0]);
+    if (is_crank(joint)) return crank_leg(std::move(leg), joint.at);
     leg.side = (leg.platform_point - leg.base_point).dot(leg.direction) > 0 ? -1 : 1;
+    return leg;
+  }
+
+  /// The rest of a leg on a crank that turns about `leg.direction` through a point.
+  static std::optional<Leg> crank_leg(Leg leg, const Vector3& at) {
+    leg.kind = Leg::Kind::crank_rod;
+    leg.centre = at + leg.direction.dot(leg.base_point - at) * leg.direction;
+    const Vector3 crank = leg.base_point - leg.centre;
+    if (!(crank.norm() > 1e-9 * leg.length)) return std::nullopt;
+    // Of the two angles home's: where the rod pulls the crank forward, or back.
+    const Vector3 onward = leg.direction.cross(crank);
+    leg.side = (leg.platform_point - leg.base_point).dot(onward) > 0 ? -1 : 1;
     return leg;
   }
 
@@ -139,6 +166,11 @@ class Recogniser {
 };
 
 }  // namespace
+
+bool has_cranks(const LegMachine& machine) {
+  return std::ranges::any_of(machine.legs,
+                             [](const Leg& leg) { return leg.kind == Leg::Kind::crank_rod; });
+}
 
 int carriage_leg(const Mechanism& mechanism, const LegMachine& machine, int body) {
   for (int i = 0; i < static_cast<int>(machine.legs.size()); ++i) {

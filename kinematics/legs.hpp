@@ -8,27 +8,31 @@
 
 namespace polyglide {
 
-/// One rod of constant length between a driven carriage and the platform, or a
+/// One rod of constant length between a driven carriage or crank and the platform, or a
 /// driven strut between base and platform. Base frame at home, SI.
 struct Leg {
-  enum class Kind { guide_rod, strut } kind = Kind::guide_rod;
-  int drive = 0;                           ///< index into Model::drives
-  Vector3 base_point;                      ///< carriage joint at home, or strut's base joint [m]
-  Vector3 direction;                       ///< unit guide direction (guide_rod)
-  Vector3 platform_point;                  ///< platform joint at home [m]
-  double length = 0;                       ///< rod length, or strut length at home [m]
-  double side = 1;                         ///< which of the two roots home is on (guide_rod): ±1
-  Range stroke;                            ///< of the drive, from home [m]
+  enum class Kind { guide_rod, strut, crank_rod } kind = Kind::guide_rod;
+  int drive = 0;       ///< index into Model::drives
+  Vector3 base_point;  ///< the rod's joint on carriage or crank at home, or strut's [m]
+  Vector3 direction;   ///< unit: guide (guide_rod), axis (crank_rod), line (strut)
+  Vector3 centre = Vector3::Zero();  ///< of the circle of base_point about the axis (crank_rod) [m]
+  Vector3 platform_point;            ///< platform joint at home [m]
+  double length = 0;                 ///< rod length, or strut length at home [m]
+  double side = 1;                   ///< which of the two roots home is on: ±1
+  Range stroke;                      ///< of the drive, from home [m, rad]
   int base_joint = 0, platform_joint = 0;  ///< indices of the end joints, for cones
 };
 
-/// A machine all of whose limbs are guide + rods or struts: its inverse
+/// A machine all of whose limbs are guide + rods, crank + rods or struts: its inverse
 /// kinematics is closed form. Several legs may share a drive (parallelogram,
 /// rod pairs): `primary[d]` is the leg that gives drive d.
 struct LegMachine {
   std::vector<Leg> legs;
   std::vector<int> primary;
 };
+
+/// Whether some drive turns an arm. Interval enclosures exist for guides and struts only.
+[[nodiscard]] bool has_cranks(const LegMachine& machine);
 
 /// Recognises such a machine; nullopt for any other (then the general solver
 /// is used). Makes a machine general: a limb without drive, a drive without limb,

@@ -120,6 +120,7 @@ Probe::Probe(const Evaluator& evaluator, const Eigen::Quaterniond& rotation)
   names_.push_back("search box");
   for (int axis : evaluator.machine().task.axes)
     if (axis < 3) active_[axis] = true;
+  square_ = evaluator.machine().model.drives.size() == evaluator.machine().task.axes.size();
   PoseBatch home;
   home.x = home.y = home.z = {0};
   BatchResult result;
@@ -128,14 +129,18 @@ Probe::Probe(const Evaluator& evaluator, const Eigen::Quaterniond& rotation)
 }
 
 Probe::Answers Probe::ask(const Points& points, bool conditioning) const {
-  const PoseBatch batch{points.x, points.y, points.z, rotation_, conditioning};
+  PoseBatch batch{points.x, points.y, points.z, rotation_};
+  // Where J is square its determinant tells what is singular, and costs less.
+  if (!conditioning && square_) batch.wanted = Wanted::orientation;
   BatchResult result;
   evaluator_.evaluate(batch, result);
   poses_ += points.size();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool across = side_ != 0 && result.orientation[i] != side_;
-    if (result.limit[i] < 0 && (across || !(result.inverse_condition[i] > kSingular)))
-      result.limit[i] = singularity();
+    const bool regular = (batch.wanted & Wanted::condition) != 0
+                             ? result.inverse_condition[i] > kSingular
+                             : result.orientation[i] != 0;
+    if (result.limit[i] < 0 && (across || !regular)) result.limit[i] = singularity();
   }
   return {std::move(result.limit), std::move(result.inverse_condition),
           std::move(result.orientation)};

@@ -30,8 +30,8 @@ class Probe {
   Probe(const Evaluator& evaluator, const Eigen::Quaterniond& rotation);
 
   struct Answers {
-    std::vector<int> limit;  ///< -1 inside, else index into names()
-    std::vector<double> inverse_condition;
+    std::vector<int> limit;                 ///< -1 inside, else index into names()
+    std::vector<double> inverse_condition;  ///< may be empty when it was not asked for
     std::vector<signed char> orientation;
     [[nodiscard]] bool inside(std::size_t i) const { return limit[i] < 0; }
   };
@@ -59,6 +59,7 @@ class Probe {
   Eigen::Quaterniond rotation_;
   std::vector<std::string> names_;
   std::array<bool, 3> active_{};
+  bool square_ = false;  ///< as many drives as task axes
   int side_ = 0;
   mutable std::atomic<std::size_t> poses_ = 0;
 };

@@ -19,6 +19,10 @@ Bounds leg_bounds(const Model& model, const Leg& leg, const Eigen::Matrix3d& rot
   if (leg.kind == Leg::Kind::strut) {
     bounds.lower.setConstant(-(leg.length + max));
     bounds.upper.setConstant(leg.length + max);
+  } else if (leg.kind == Leg::Kind::crank_rod) {
+    const Vector3 back = leg.centre - leg.base_point;
+    const Vector3 span = Vector3::Constant(back.norm() + leg.length);
+    bounds = {back - span, back + span};
   } else {
     bounds.lower = (min * leg.direction).cwiseMin(max * leg.direction).array() - leg.length;
     bounds.upper = (min * leg.direction).cwiseMax(max * leg.direction).array() + leg.length;

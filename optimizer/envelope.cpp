@@ -75,6 +75,9 @@ Eigen::AlignedBox3d reach_box(const Machine& machine) {
     places.extend(leg.base_point);
     if (leg.kind == Leg::Kind::strut) {
       reach += leg.stroke.max;
+    } else if (leg.kind == Leg::Kind::crank_rod) {
+      reach += (leg.base_point - leg.centre).norm();
+      places = Eigen::AlignedBox3d(leg.centre);
     } else {
       if (!std::isfinite(leg.stroke.min) || !std::isfinite(leg.stroke.max)) continue;
       places = Eigen::AlignedBox3d();

@@ -25,8 +25,9 @@ std::string cone_text(const Joint& joint) {
 std::string leg_text(const Mechanism& mechanism, const Leg& leg, bool primary) {
   return fmt::format("{} {} {} {}", static_cast<int>(leg.kind), leg.drive, primary,
                      text(leg.side)) +
-         text(leg.base_point) + text(leg.direction) + text(leg.platform_point) + text(leg.length) +
-         text(leg.stroke.min) + text(leg.stroke.max) + cone_text(mechanism.joints[leg.base_joint]) +
+         text(leg.base_point) + text(leg.direction) + text(leg.centre) + text(leg.platform_point) +
+         text(leg.length) + text(leg.stroke.min) + text(leg.stroke.max) +
+         cone_text(mechanism.joints[leg.base_joint]) +
          cone_text(mechanism.joints[leg.platform_joint]) + '\n';
 }
 

@@ -5,8 +5,6 @@
 
 #include <cmath>
 
-#include "kinematics/batch_loops.hpp"
-#include "kinematics/condition.hpp"
 #include "machines.hpp"
 
 namespace polyglide {
@@ -227,59 +225,6 @@ TEST(Evaluate, OneAndTwoThreadsGiveTheSameBits) {
   evaluator.evaluate(batch, two);
   EXPECT_EQ(one.limit, two.limit);
   EXPECT_EQ(one.inverse_condition, two.inverse_condition);
-}
-
-double by_svd(const Eigen::MatrixXd& j) {
-  const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(j).singularValues();
-  return s[s.size() - 1] / s[0];
-}
-
-double closed_form(const Eigen::Matrix3d& j) {
-  const Eigen::Matrix3d g = j.transpose() * j;
-  return inverse_condition(g(0, 0), g(0, 1), g(0, 2), g(1, 1), g(1, 2), g(2, 2));
-}
-
-TEST(Condition, TheClosedFormAgreesWithSingularValues) {
-  Uniform random;
-  for (int i = 0; i < 2000; ++i) {
-    Eigen::Matrix3d j;
-    for (int k = 0; k < 3; ++k) j.col(k) = random.vector() * std::pow(10, 1.5 * random());
-    EXPECT_NEAR(closed_form(j), by_svd(j), 2e-7);
-  }
-}
-
-TEST(Condition, RepeatedAndVanishingSingularValuesAreHandled) {
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()).toRotationMatrix();
-  for (const Vector3& s : {Vector3(1, 1, 1), Vector3(2, 1, 1), Vector3(2, 2, 1),
-                           Vector3(1e3, 1e3, 1e3), Vector3(5, 5, 0.01), Vector3(1e-3, 1e-3, 1e-4)})
-    EXPECT_NEAR(closed_form(turn * s.asDiagonal() * turn), s.minCoeff() / s.maxCoeff(), 1e-7);
-  EXPECT_NEAR(closed_form(turn * Vector3(1, 1, 0).asDiagonal()), 0, 1e-7);
-  EXPECT_EQ(closed_form(Eigen::Matrix3d::Zero()), 0);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(inverse_condition(nan, 0, 0, 1, 0, 1), 0);
-}
-
-TEST(Condition, JacobiRotationsAgreeWithSingularValuesInEverySize) {
-  Uniform random;
-  for (int n = 1; n <= 6; ++n) {
-    batch::Grams grams{};
-    std::vector<double> expected;
-    for (int lane = 0; lane < batch::kLanes; ++lane) {
-      Eigen::MatrixXd j(n, n);
-      for (int r = 0; r < n; ++r)
-        for (int c = 0; c < n; ++c) j(r, c) = random();
-      if (lane == 0) j.setIdentity();
-      const Eigen::MatrixXd gram = j.transpose() * j;
-      for (int r = 0; r < n; ++r)
-        for (int c = r; c < n; ++c) grams.entry[r][c][lane] = gram(r, c);
-      expected.push_back(by_svd(j));
-    }
-    double inverse[batch::kLanes];
-    batch::condition_n(n, grams, inverse);
-    for (int lane = 0; lane < batch::kLanes; ++lane)
-      EXPECT_NEAR(inverse[lane], expected[lane], 1e-7) << n;
-  }
 }
 
 }  // namespace

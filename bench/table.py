@@ -1,0 +1,58 @@
+#!/usr/bin/python3
+"""Writes the table of bench/README.md from the results in a folder. Usage: table.py FOLDER README"""
+import json
+import os
+import sys
+
+
+def rates(folder):
+    found = {}
+    for name in ("batch", "forward"):
+        for row in json.load(open(f"{folder}/{name}.json"))["benchmarks"]:
+            if row.get("run_type") != "iteration":
+                continue
+            best = found.get(row["name"], (0, 0))
+            found[row["name"]] = max(best, (row["items_per_second"], row.get("flops", 0)))
+    for name, row in json.load(open(f"{folder}/numpy.json")).items():
+        found[name] = (row["rate"], 0)
+    return found
+
+
+def processor():
+    for line in open("/proc/cpuinfo"):
+        if line.startswith("model name"):
+            return line.split(":")[1].strip()
+    return "unknown processor"
+
+
+def table(folder):
+    found = rates(folder)
+    peaks = {kind: found[f"peak/{kind}"][0] * found[f"peak/{kind}"][1]
+             for kind in ("v3", "v4") if f"peak/{kind}" in found}
+    lines = [f"{processor()}, load average {os.getloadavg()[0]:.1f} while measuring; FMA peak per core: "
+             + ", ".join(f"{kind} {peak / 1e9:.1f} GFLOP/s" for kind, peak in peaks.items()) + ".",
+             "", "| work | how | M/s per core | operations | of peak | best kernel / it |",
+             "|---|---|---|---|---|---|"]
+    best = {}
+    for name, (rate, _) in found.items():
+        work = name.rsplit("/", 1)[0]
+        best[work] = max(best.get(work, 0), rate)
+    for name, (rate, operations) in sorted(found.items()):
+        work, how = name.rsplit("/", 1)
+        if work == "peak":
+            continue
+        share = f"{100 * rate * operations / peaks[how]:.0f} %" if how in peaks and operations else ""
+        lines.append(f"| {work} | {how} | {rate / 1e6:.3g} | {operations:.0f} | {share} |"
+                     f" {best[work] / rate:.1f} |")
+    return "\n".join(lines)
+
+
+def main(folder, readme):
+    text = open(readme).read()
+    begin, end = "<!-- table -->", "<!-- end of table -->"
+    head, rest = text.split(begin)
+    open(readme, "w").write(head + begin + "\n" + table(folder) + "\n" + end + rest.split(end)[1])
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2])
