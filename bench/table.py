@@ -7,14 +7,15 @@ import sys
 
 def rates(folder):
     found = {}
-    for name in ("batch", "forward"):
+    for name in ("batch", "forward", "mobility"):
         for row in json.load(open(f"{folder}/{name}.json"))["benchmarks"]:
             if row.get("run_type") != "iteration":
                 continue
             best = found.get(row["name"], (0, 0))
             found[row["name"]] = max(best, (row["items_per_second"], row.get("flops", 0)))
-    for name, row in json.load(open(f"{folder}/numpy.json")).items():
-        found[name] = (row["rate"], 0)
+    for name in ("numpy", "numpy_mobility"):
+        for work, row in json.load(open(f"{folder}/{name}.json")).items():
+            found[work] = (row["rate"], 0)
     return found
 
 
