@@ -17,7 +17,6 @@ constexpr double kSameBranch = 0.35;   // sine of the angle between tangent spac
 constexpr double kLong = 0.2;          // a leap, where short steps show nothing
 constexpr double kNearlyClosed = 1e-7;
 constexpr double kLeapt = 0.3;  // of a leap: a posture nearer to home has fallen back
-constexpr std::size_t kLeaps = 8;
 constexpr std::size_t kTries = 3;  // members of a component of directions that are tried
 
 /// Sine of the largest angle from the smaller space to the larger.
@@ -52,8 +51,11 @@ class Explorer {
   bool go_on(Place& place);
 
  private:
-  /// A step along scaled rates of all freedoms. How far the manifold was left of the
-  /// straight way, as part of the step; negative when there was no way.
+  /// The active freedoms' part of scaled rates that keep the loops closed, the fastest 1; zero
+  /// when there is none.
+  [[nodiscard]] Eigen::VectorXd paced(const Eigen::VectorXd& rates) const;
+  /// A step along scaled rates of all freedoms, out of the kernel there. How far the manifold was
+  /// left of the straight way, as part of the step; negative when there was no way.
   double step(Posture& posture, const Eigen::VectorXd& rates, double length);
   [[nodiscard]] Eigen::MatrixXd kernel_of(const Freedoms& free) const;
   bool wander(Place& place, double length);
@@ -73,8 +75,15 @@ class Explorer {
   Departure result_;
 };
 
+Eigen::VectorXd Explorer::paced(const Eigen::VectorXd& rates) const {
+  const Eigen::VectorXd along = rates(active_);
+  const double fastest = along.size() > 0 ? along.cwiseAbs().maxCoeff() : 0;
+  if (fastest < 1e-7) return Eigen::VectorXd::Zero(along.size());
+  return along / fastest;
+}
+
 double Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double length) {
-  const Eigen::VectorXd along = tangent(model_, posture, active_, rates(active_));
+  const Eigen::VectorXd along = paced(rates);
   if (along.isZero()) return -1;
   Posture straight = posture;
   Eigen::VectorXd increments = Eigen::VectorXd::Zero(rates.size());
@@ -123,7 +132,7 @@ bool Explorer::wander(Place& place, double length) {
     Posture posture = place.posture;
     const double bend = step(posture, rates, length);
     if (bend < 0 || bend > kCrossed) continue;
-    Freedoms free = freedoms_at(model_, posture);
+    Freedoms free = freedoms_at(model_, posture, Certainty::screened);
     if (free.rank.smallest < kNearSingular * place.free.rank.smallest) continue;
     const Eigen::MatrixXd there = kernel_of(free);
     if (there.cols() != kernel.cols() || separation(kernel, there) > kTurned) continue;
@@ -159,10 +168,12 @@ bool Explorer::walk_far(Branch& branch, const Place& near) {
   return moved;
 }
 
+/// Postures on the way are screened; the counts of the last are confirmed.
 bool Explorer::go_on(Place& place) {
-  for (int i = 0; i < options_.steps; ++i)
-    if (!wander(place, options_.step)) return i > 0;
-  return true;
+  int made = 0;
+  while (made < options_.steps && wander(place, options_.step)) ++made;
+  place.free = freedoms_at(model_, place.posture);
+  return made > 0 || options_.steps == 0;
 }
 
 bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
@@ -170,7 +181,7 @@ bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
     Posture posture = home_;
     const double bend = step(posture, even_mixture(kernel, random_), length);
     if (bend < 0 || bend > kStraight) continue;
-    Freedoms free = freedoms_at(model_, posture);
+    Freedoms free = freedoms_at(model_, posture, Certainty::screened);
     Branch branch{kernel_of(free), {}, {}, 0};
     if (branch.near_kernel.cols() != kernel.cols()) return false;
     // Where no walk gets on, a condition of higher order was too small to be seen so close.
@@ -195,7 +206,7 @@ void Explorer::meet(const Place& near) {
 /// A long step whose end is pulled back onto the manifold wherever that is nearest: a way out
 /// where conditions of higher order hide the direction of it.
 bool Explorer::leap(Posture& posture, const Eigen::VectorXd& rates) {
-  const Eigen::VectorXd along = tangent(model_, posture, active_, rates(active_));
+  const Eigen::VectorXd along = paced(rates);
   if (along.isZero()) return false;
   Eigen::VectorXd increments = Eigen::VectorXd::Zero(rates.size());
   increments(active_) = kLong * along;
@@ -221,7 +232,7 @@ void Explorer::leave_by_second_order(const Eigen::MatrixXd& kernel) {
       for (const int side : {1, -1}) {
         Posture near = home_;
         if (left || step(near, side * (kernel * component[i]), kShort) < 0) continue;
-        const Freedoms free = freedoms_at(model_, near);
+        const Freedoms free = freedoms_at(model_, near, Certainty::screened);
         if (span_of(component) > kernel_of(free).cols()) result_.cone = true;
         meet({std::move(near), free});
         left = true;
@@ -229,12 +240,12 @@ void Explorer::leave_by_second_order(const Eigen::MatrixXd& kernel) {
   }
   if (!result_.branches.empty()) return;
   for (const auto& component : allowed.components)
-    for (std::size_t i = 0; i < std::min(kLeaps, component.size()); ++i)
+    for (std::size_t i = 0; i < std::min<std::size_t>(options_.leaps, component.size()); ++i)
       for (const int side : {1, -1}) {
         Posture near = home_;
         if (!leap(near, side * (kernel * component[i]))) continue;
         result_.blind = true;
-        const Freedoms free = freedoms_at(model_, near);
+        const Freedoms free = freedoms_at(model_, near, Certainty::screened);
         meet({std::move(near), free});
       }
 }

@@ -13,6 +13,7 @@ struct WalkOptions {
   double step = 0.25;  ///< length of a long step [rad, or length/size of the fastest joint]
   double closure =
       1e-10;  ///< loop error that is still closed; more for a drawing that is not exact
+  int leaps = 8;  ///< members of a component tried where short steps show no way out
 };
 
 /// A posture that was reached, and the freedoms there with nothing held.

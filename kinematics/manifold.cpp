@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 namespace polyglide {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 constexpr double kClosed = 1e-12;      // aim; Newton's last step usually lands far below
 constexpr double kCloseEnough = 1e-7;  // when Newton has stagnated: loops of a nine-digit drawing
                                        // with redundant constraints close no better
+constexpr double kNear = 1e-6;  // residual from which the last linearisation takes Newton home
 constexpr int kMostIterations = 40;
 constexpr int kPatience = 3;          // iterations without progress before Newton gives up
 constexpr double kProgress = 0.7;     // part of the best residual so far that counts as progress
@@ -19,7 +21,8 @@ constexpr double kLongestStep = 0.6;  // [rad] of the fastest joint, keeps Newto
 class DampedInverse {
  public:
   explicit DampedInverse(const Eigen::MatrixXd& jacobian) {
-    Eigen::MatrixXd gram = jacobian * jacobian.transpose();
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(jacobian.rows(), jacobian.rows());
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(jacobian);  // all that the factor reads
     const double scale = gram.trace() / std::max<double>(1, static_cast<double>(gram.rows()));
     gram.diagonal().array() += 1e-11 * std::max(scale, 1e-6);
     factor_.compute(gram);
@@ -55,18 +58,31 @@ Demand loops_and(const Goal& goal, const Model& model, const Posture& posture) {
   return both;
 }
 
-/// The demand on the active freedoms only, and none of their motion along `pin`.
-Demand restricted(Demand demand, const std::vector<int>& active, const Eigen::VectorXd* pin) {
-  if (static_cast<Eigen::Index>(active.size()) < demand.jacobian.cols())
-    demand.jacobian = columns(demand.jacobian, active);
-  if (pin == nullptr) return demand;
-  const Eigen::Index rows = demand.residual.size();
-  demand.residual.conservativeResize(rows + 1);
-  demand.residual[rows] = 0;
-  demand.jacobian.conservativeResize(rows + 1, Eigen::NoChange);
-  demand.jacobian.row(rows) = *pin;
-  return demand;
+/// A demand's derivative by the active freedoms only, with a row for none of their motion along
+/// `pin`.
+Eigen::MatrixXd restricted(Eigen::MatrixXd jacobian, const std::vector<int>& active,
+                           const Eigen::VectorXd* pin) {
+  if (static_cast<Eigen::Index>(active.size()) < jacobian.cols())
+    jacobian = columns(jacobian, active);
+  if (pin == nullptr) return jacobian;
+  jacobian.conservativeResize(jacobian.rows() + 1, Eigen::NoChange);
+  jacobian.bottomRows<1>() = pin->transpose();
+  return jacobian;
 }
+
+/// One linearisation of what is demanded: the way of least motion that meets a residual.
+class Linearised {
+ public:
+  explicit Linearised(Eigen::MatrixXd jacobian)
+      : jacobian_(std::move(jacobian)), inverse_(jacobian_) {}
+  [[nodiscard]] Eigen::VectorXd step_for(const Eigen::VectorXd& residual) const {
+    return -jacobian_.transpose() * inverse_.solve(residual);
+  }
+
+ private:
+  Eigen::MatrixXd jacobian_;
+  DampedInverse inverse_;
+};
 
 /// Newton by damped normal equations; with a pin only across it.
 Projection pull_back(const Model& model, Posture& posture, const std::vector<int>& active,
@@ -75,8 +91,10 @@ Projection pull_back(const Model& model, Posture& posture, const std::vector<int
   if (model.loop_joints.empty() && !goal) return {true, 0, 0};
   double best = std::numeric_limits<double>::infinity();
   int idle = 0;
+  std::optional<Linearised> linearised;
   for (;; ++result.iterations) {
-    const Demand demand = restricted(loops_and(goal, model, posture), active, pin);
+    Demand demand = goal ? loops_and(goal, model, posture)
+                         : Demand{closure_residual(model, posture), {}};
     result.residual = demand.residual.cwiseAbs().maxCoeff();
     if (result.residual < kClosed || result.iterations == kMostIterations ||
         !(result.residual < 1e3))
@@ -84,8 +102,13 @@ Projection pull_back(const Model& model, Posture& posture, const std::vector<int
     idle = result.residual < kProgress * best ? 0 : idle + 1;
     best = std::min(best, result.residual);
     if (idle >= kPatience && (pin != nullptr || best < kCloseEnough)) break;
-    Eigen::VectorXd step =
-        -demand.jacobian.transpose() * DampedInverse(demand.jacobian).solve(demand.residual);
+    if (!linearised || result.residual > kNear || idle > 0) {
+      if (!goal) demand.jacobian = closure_jacobian(model, posture);
+      linearised.emplace(restricted(std::move(demand.jacobian), active, pin));
+    }
+    demand.residual.conservativeResize(demand.residual.size() + (pin != nullptr ? 1 : 0));
+    if (pin != nullptr) demand.residual.tail<1>().setZero();
+    Eigen::VectorXd step = linearised->step_for(demand.residual);
     const double fastest = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
     if (!(fastest > 1e-16)) break;
     if (fastest > kLongestStep) step *= kLongestStep / fastest;

@@ -50,7 +50,7 @@ class Analysis {
   void note(const Freedoms& freedoms);
   void describe_task();
   [[nodiscard]] WalkOptions walk_options(int walks, int steps) const {
-    return {walks, steps, kStep, std::max(kClosed, kLoose * report_.noise)};
+    return {walks, steps, kStep, std::max(kClosed, kLoose * report_.noise), options_.leaps};
   }
 
   const Model& model_;
@@ -315,7 +315,7 @@ std::string to_string(Verdict verdict) {
   return "";
 }
 
-MobilityOptions screening_options(std::uint64_t seed) { return {seed, 1, 1, false}; }
+MobilityOptions screening_options(std::uint64_t seed) { return {seed, 1, 1, 3, false}; }
 
 MobilityReport analyse_mobility(const Model& model, const MobilityOptions& options) {
   Analysis analysis(model, options);

@@ -73,6 +73,7 @@ struct MobilityOptions {
   std::uint64_t seed = 1;
   int walks = 3;         ///< generic postures on every motion branch
   int steps = 3;         ///< steps of 0.25 rad (of the fastest joint) to each
+  int leaps = 8;         ///< tries per component of directions at homes singular beyond second order
   bool evidence = true;  ///< also gather evidence; off for screening
 };
 

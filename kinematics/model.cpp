@@ -44,10 +44,11 @@ Transform rotation_about(const Eigen::Quaterniond& rotation, const Vector3& cent
 Transform joint_motion(const Model& model, const Posture& posture, int joint) {
   const Joint& data = model.mechanism.joints[joint];
   if (data.type == JointType::spherical) return rotation_about(posture.balls[joint], data.at);
-  Transform motion = Transform::Identity();
-  const int first = model.first_freedom[joint];
-  for (int i = 0; i < freedoms(data.type); ++i)
-    motion = motion * exponential(model.freedoms[first + i].screw, posture.q[first + i]);
+  const int first = model.first_freedom[joint], count = freedoms(data.type);
+  if (count == 0) return Transform::Identity();
+  Transform motion = exponential(model.freedoms[first].screw, posture.q[first]);
+  for (int f = first + 1; f < first + count; ++f)
+    motion = motion * exponential(model.freedoms[f].screw, posture.q[f]);
   return motion;
 }
 

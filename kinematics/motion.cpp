@@ -42,7 +42,7 @@ Split split_freedoms(const Model& model) {
 
 }  // namespace
 
-Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& jacobian) {
+Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& jacobian, Certainty certainty) {
   const Split split = split_freedoms(model);
   const auto loops = static_cast<int>(model.loops.size());
   Eigen::MatrixXd reduced(6 * loops, split.tree.size());
@@ -72,7 +72,8 @@ Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& jacobian) {
                        .triangularView<Eigen::Upper>()
                        .solve(tree.topRows(own.cols()));
   }
-  const Kernel tree = kernel_of(reduced.topRows(rows));
+  const Kernel tree = certainty == Certainty::confirmed ? kernel_of(reduced.topRows(rows))
+                                                        : screened_kernel(reduced.topRows(rows));
   Kernel kernel{tree.decision, Eigen::MatrixXd(jacobian.cols(), tree.basis.cols())};
   kernel.basis(split.tree, Eigen::all) = tree.basis;
   for (int loop = 0; loop < loops; ++loop)
@@ -99,12 +100,13 @@ Eigen::MatrixXd platform_motion(const Model& model, const Posture& posture,
   return twists;
 }
 
-Freedoms freedoms_at(const Model& model, const Posture& posture) {
+Freedoms freedoms_at(const Model& model, const Posture& posture, Certainty certainty) {
   Freedoms result;
-  Kernel kernel = closure_kernel(model, closure_jacobian(model, posture));
+  Kernel kernel = closure_kernel(model, closure_jacobian(model, posture), certainty);
   result.rank = kernel.decision;
   result.kernel = std::move(kernel.basis);
   result.mobility = static_cast<int>(result.kernel.cols());
+  if (certainty == Certainty::screened) return result;
   result.platform = platform_motion(model, posture, result.kernel);
   // Kernel columns are orthonormal: a platform rate of 1 is real, 1e-15 is not.
   result.platform_rank = rank_of(result.platform, 1);
@@ -118,6 +120,7 @@ Freedoms hold_drives(const Model& model, const Freedoms& free) {
   held.kernel = free.kernel * kernel.basis;
   held.kernel(model.drives, Eigen::all).setZero();
   held.mobility = static_cast<int>(held.kernel.cols());
+  if (free.platform.cols() < free.kernel.cols()) return held;  // screened
   held.platform = free.platform * kernel.basis;
   held.platform_rank = rank_of(held.platform, 1);
   return held;

@@ -5,11 +5,15 @@
 
 namespace polyglide {
 
+/// How sure a kernel must be: decided by singular values, or by pivots where they leave no doubt.
+enum class Certainty { confirmed, screened };
+
 /// Kernel of the loop-closure Jacobian, one row per freedom (scaled rates).
 /// The freedoms of the closing joints are eliminated first (each loop is projected
 /// on what its closing joint cannot do), which leaves the kernel as it is and the
 /// matrix a third as large. Columns are orthonormal in the other freedoms.
-[[nodiscard]] Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& jacobian);
+[[nodiscard]] Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& jacobian,
+                                    Certainty certainty = Certainty::confirmed);
 
 /// Instantaneous freedoms of a mechanism at one posture.
 struct Freedoms {
@@ -24,8 +28,9 @@ struct Freedoms {
 [[nodiscard]] Eigen::MatrixXd platform_motion(const Model& model, const Posture& posture,
                                               const Eigen::MatrixXd& rates);
 
-/// Freedoms with nothing held.
-[[nodiscard]] Freedoms freedoms_at(const Model& model, const Posture& posture);
+/// Freedoms with nothing held. Screened ones leave the platform aside.
+[[nodiscard]] Freedoms freedoms_at(const Model& model, const Posture& posture,
+                                   Certainty certainty = Certainty::confirmed);
 
 /// What is left of them with all drives held: the part of the kernel in which no drive
 /// moves. Costs one small decomposition instead of another large one.

@@ -4,6 +4,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 namespace polyglide {
@@ -90,17 +91,52 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& basis) {
          Eigen::MatrixXd::Identity(basis.rows(), basis.cols());
 }
 
-Kernel kernel_of(const Eigen::MatrixXd& matrix, double reference) {
-  Kernel kernel;
-  if (matrix.rows() == 0 || matrix.cols() == 0) {
-    kernel.decision.gap = kLargestGap;
-    kernel.basis = Eigen::MatrixXd::Identity(matrix.cols(), matrix.cols());
-    return kernel;
-  }
-  const Svd svd = svd_of(matrix);
-  kernel.decision = decide_rank(svd.values, reference);
-  kernel.basis = svd.v.rightCols(matrix.cols() - kernel.decision.rank);
+namespace {
+
+constexpr double kSurelyReal = 1e-5, kSurelyNoise = 1e-10;  // of the largest pivot
+
+/// Kernel from the pivoted QR decomposition of the transpose: the rows' span is Q's first columns.
+/// nullopt where a pivot leaves doubt.
+std::optional<Kernel> kernel_by_pivots(const Eigen::MatrixXd& matrix) {
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix.transpose());
+  const Eigen::VectorXd pivots = qr.matrixQR().diagonal().cwiseAbs();
+  const double top = pivots[0];
+  if (!(top > 0)) return std::nullopt;
+  const bool sure = std::ranges::all_of(pivots, [top](double pivot) {
+    return pivot > kSurelyReal * top || pivot < kSurelyNoise * top;
+  });
+  if (!sure) return std::nullopt;
+  Kernel kernel{decide_rank(pivots), {}};
+  const Eigen::Index left = matrix.cols() - kernel.decision.rank;
+  kernel.basis = Eigen::MatrixXd::Zero(matrix.cols(), left);
+  kernel.basis.bottomRows(left).setIdentity();
+  kernel.basis.applyOnTheLeft(qr.householderQ());
   return kernel;
+}
+
+Kernel kernel_of_nothing(Eigen::Index cols) {
+  Kernel kernel;
+  kernel.decision.gap = kLargestGap;
+  kernel.basis = Eigen::MatrixXd::Identity(cols, cols);
+  return kernel;
+}
+
+}  // namespace
+
+Kernel kernel_of(const Eigen::MatrixXd& matrix, double reference) {
+  if (matrix.size() == 0) return kernel_of_nothing(matrix.cols());
+  const RankDecision decision = decide_rank(singular_values(matrix), reference);
+  if (auto kernel = kernel_by_pivots(matrix); kernel && kernel->decision.rank == decision.rank) {
+    kernel->decision = decision;
+    return *std::move(kernel);
+  }
+  return {decision, svd_of(matrix).v.rightCols(matrix.cols() - decision.rank)};
+}
+
+Kernel screened_kernel(const Eigen::MatrixXd& matrix) {
+  if (matrix.size() == 0) return kernel_of_nothing(matrix.cols());
+  if (auto kernel = kernel_by_pivots(matrix)) return *std::move(kernel);
+  return kernel_of(matrix);
 }
 
 RankDecision rank_of(const Eigen::MatrixXd& matrix, double reference) {

@@ -58,11 +58,19 @@ struct Kernel {
   Eigen::MatrixXd basis;  ///< columns: orthonormal basis of the kernel, cols × (cols - rank)
 };
 
-/// Kernel by LAPACK's singular value decomposition.
+/// Kernel, its rank decided by LAPACK's singular values. The basis comes from a pivoted QR
+/// decomposition where that sees the same rank beyond doubt, else from the singular vectors.
 /// A matrix without rows has the identity as kernel and the largest gap, 1e16.
 /// @param reference as for decide_rank().
 /// @throws std::invalid_argument when an entry is not finite.
+/// Cost: about 25 µs for 18×20.
 [[nodiscard]] Kernel kernel_of(const Eigen::MatrixXd& matrix, double reference = 0);
+
+/// The same without singular values where the pivoted QR decomposition leaves no doubt (nothing
+/// between 1e-10 and 1e-5 of the largest pivot): for postures on the way, which no verdict rests
+/// on. `gap` and `smallest` are then those of the pivots.
+/// Cost: about 8 µs for 18×20.
+[[nodiscard]] Kernel screened_kernel(const Eigen::MatrixXd& matrix);
 
 /// Singular values only.
 [[nodiscard]] RankDecision rank_of(const Eigen::MatrixXd& matrix, double reference = 0);
