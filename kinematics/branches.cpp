@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kShort = 0.03;        // first step: tangents still tell branches apart
 constexpr double kStraight = 0.15;     // of a step: a smooth manifold leaves its tangent no further
+constexpr int kQuick = 10;  // Newton iterations; more after a short step mean that it ended where
+                            // a freedom that does not continue is still instantaneous
 constexpr double kCrossed = 0.4;       // of a long step
 constexpr double kTurned = 0.6;        // sine of the angle a tangent space turns on a long step
 constexpr double kNearSingular = 0.1;  // of the smallest singular value one step before
@@ -56,7 +58,8 @@ class Explorer {
   [[nodiscard]] Eigen::VectorXd paced(const Eigen::VectorXd& rates) const;
   /// A step along scaled rates of all freedoms, out of the kernel there. How far the manifold was
   /// left of the straight way, as part of the step; negative when there was no way.
-  double step(Posture& posture, const Eigen::VectorXd& rates, double length);
+  /// @param quickly only a way on which Newton's method finds back at once, as on smooth manifolds
+  double step(Posture& posture, const Eigen::VectorXd& rates, double length, bool quickly = false);
   [[nodiscard]] Eigen::MatrixXd kernel_of(const Freedoms& free) const;
   bool wander(Place& place, double length);
   bool leap(Posture& posture, const Eigen::VectorXd& rates);
@@ -82,7 +85,8 @@ Eigen::VectorXd Explorer::paced(const Eigen::VectorXd& rates) const {
   return along / fastest;
 }
 
-double Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double length) {
+double Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double length,
+                      bool quickly) {
   const Eigen::VectorXd along = paced(rates);
   if (along.isZero()) return -1;
   Posture straight = posture;
@@ -92,6 +96,7 @@ double Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double len
   Posture there = posture;
   const Projection projection = step_along(model_, there, active_, along, length);
   if (projection.residual > options_.closure) return -1;
+  if (quickly && projection.iterations > kQuick) return -1;
   posture = std::move(there);
   result_.residual = std::max(result_.residual, projection.residual);
   return displacement(model_, straight, posture) / length;
@@ -146,7 +151,7 @@ bool Explorer::wander(Place& place, double length) {
 /// and second order counts the rest.
 bool Explorer::is_shaky(Branch& branch, const Place& near) {
   Posture posture = near.posture;
-  const double bend = step(posture, even_mixture(branch.near_kernel, random_), kShort);
+  const double bend = step(posture, even_mixture(branch.near_kernel, random_), kShort, true);
   if (bend >= 0 && bend < kStraight) return false;
   const SecondOrder allowed =
       second_order(model_, near.posture, branch.near_kernel, active_, random_);
@@ -179,11 +184,17 @@ bool Explorer::go_on(Place& place) {
 bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
   for (const double length : {kShort, kShort / 4}) {
     Posture posture = home_;
-    const double bend = step(posture, even_mixture(kernel, random_), length);
+    const double bend = step(posture, even_mixture(kernel, random_), length, true);
     if (bend < 0 || bend > kStraight) continue;
     Freedoms free = freedoms_at(model_, posture, Certainty::screened);
     Branch branch{kernel_of(free), {}, {}, 0};
     if (branch.near_kernel.cols() != kernel.cols()) return false;
+    // One mixture may happen to hold little of a freedom that does not continue.
+    for (int more = 1; more < options_.walks; ++more) {
+      Posture other = home_;
+      const double bend_too = step(other, even_mixture(kernel, random_), length, true);
+      if (bend_too < 0 || bend_too > kStraight) return false;
+    }
     // Where no walk gets on, a condition of higher order was too small to be seen so close.
     if (!walk_far(branch, {std::move(posture), std::move(free)})) return false;
     result_.branches.push_back(std::move(branch));

@@ -53,8 +53,8 @@ std::vector<std::vector<int>> split_into_limbs(const Mechanism& mechanism, const
   const auto ends = [&](int body) { return body == stage.from || body == stage.to; };
   for (const int j : stage.joints) {
     const auto [first, second] = mechanism.joints[j].bodies;
-    if (!ends(first) && !ends(second))
-      std::replace(group.begin(), group.end(), group[second], group[first]);
+    if (!ends(first) && !ends(second))  // copies: std::replace takes references into the group
+      std::replace(group.begin(), group.end(), int{group[second]}, int{group[first]});
   }
   std::map<int, std::vector<int>> by_group;  // a direct joint is a limb of its own
   for (const int j : stage.joints) {

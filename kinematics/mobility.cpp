@@ -142,7 +142,8 @@ Measured Analysis::measure(const Branch& branch) {
 
 void Analysis::choose_main_branch() {
   const auto key = [](const Measured& branch) {
-    return std::tuple(branch.dimension, branch.task.translations, branch.free.platform_rank.rank);
+    return std::tuple(branch.dimension, branch.task.translations, branch.free.platform_rank.rank,
+                      -branch.locked.mobility);
   };
   for (const Measured& branch : branches_) {
     if (!main_ || key(branch) > key(*main_)) main_ = &branch;
@@ -152,7 +153,9 @@ void Analysis::choose_main_branch() {
   report_.finite = main_ ? main_->dimension : 0;
   report_.platform_dof = main_ ? main_->free.platform_rank.rank : 0;
   if (main_) report_.task = main_->task;
-  report_.redundant_constraints = report_.finite - report_.kutzbach;
+  // Freedoms that are never more than instantaneous are left by constraints that repeat others.
+  const int excess = main_ ? departure_.branches[main_ - branches_.data()].excess : 0;
+  report_.redundant_constraints = report_.finite + excess - report_.kutzbach;
   report_.idle = report_.finite - report_.platform_dof;
   report_.locked_mobility = main_ ? main_->locked.mobility : 0;
   report_.locked_platform = main_ ? main_->locked.platform_rank.rank : 0;

@@ -11,6 +11,7 @@ namespace {
 constexpr int kStarts = 24;  // two branches are told with one in ten thousand missed
 constexpr int kIterations = 30;
 constexpr double kSatisfied = 1e-8;  // of a form whose coefficients are about 1
+constexpr double kPolished = 1e-12;  // double zeros are then met to a millionth
 constexpr double kDamping = 1e-12;
 
 /// Lie bracket of two twists [w; v].
@@ -85,19 +86,22 @@ bool solve(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd& start) {
   const auto m = static_cast<Eigen::Index>(forms.size());
   Eigen::VectorXd values(m);
   Eigen::MatrixXd slopes(m, start.size());
+  double worst = 0;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     start.normalize();
     for (Eigen::Index i = 0; i < m; ++i) {
       slopes.row(i) = 2 * (forms[i] * start).transpose();
       values[i] = slopes.row(i).dot(start) / 2;
     }
-    if (values.cwiseAbs().maxCoeff() < kSatisfied) return true;
+    worst = values.cwiseAbs().maxCoeff();
+    if (worst < kPolished) break;
     slopes -= (slopes * start) * start.transpose();
     Eigen::MatrixXd gram = slopes * slopes.transpose();
     gram.diagonal().array() += kDamping;
     start -= slopes.transpose() * gram.llt().solve(values);
   }
-  return false;
+  start.normalize();
+  return worst < kSatisfied;
 }
 
 /// Projector on the directions in which all forms stay zero to first order.
