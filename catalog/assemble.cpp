@@ -238,7 +238,7 @@ void check_numbers(const Mechanism& mechanism, const std::vector<JointDraft>& dr
     if (!finite)
       problems.add(member(document, "limits"), "limit " + limit.name + " lacks a number");
   }
-  for (const Shape& shape : mechanism.shapes) {
+  for (const BodyShape& shape : mechanism.shapes) {
     bool finite = std::isfinite(shape.radius);
     for (const BodyPoint& point : shape.points) finite = finite && point.at.allFinite();
     if (!finite)

@@ -88,7 +88,7 @@ struct Mesh;
 /// The room that a body takes, for clearances: a line, a flat convex plate or a surface, thickened
 /// all round by a radius. A shape bears the name of its body; that of a rail (fixed in the body
 /// that guides) or of a telescope (whose two ends are on two bodies) bears the slide's name.
-struct Shape {
+struct BodyShape {
   enum class Form { line, plate, mesh };
   std::string name;
   Form form = Form::line;
@@ -139,7 +139,7 @@ struct Mechanism {
   std::vector<Joint> joints;
   std::vector<HalfSpaceLimit> limits;
   std::vector<ExpressionLimit> expressions;
-  std::vector<Shape> shapes;
+  std::vector<BodyShape> shapes;
   std::vector<ClearanceLimit> clearances;
 };
 

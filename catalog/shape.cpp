@@ -102,7 +102,7 @@ class ShapeReader {
     const double width = diameter.is_null() ? 0 : reader_.length(diameter);
     if (width < 0) problem(diameter, "a diameter must not be negative");
     for (const Bearer& bearer : meant) {
-      Shape shape;
+      BodyShape shape;
       shape.name = bearer.name;
       shape.radius = width / 2;
       if (value_.contains("mesh") ? read_surface(bearer, shape) : read_points(bearer, shape))
@@ -121,7 +121,7 @@ class ShapeReader {
     problem(of, "must mean a body or a slide of this machine", did_you_mean(text(of), names));
   }
 
-  bool read_surface(const Bearer& bearer, Shape& shape) {
+  bool read_surface(const Bearer& bearer, BodyShape& shape) {
     const json& name = value_["mesh"];
     for (const char* word : {"points", "form", "trim"})
       if (value_.contains(word)) problem(value_[word], "has no meaning beside a mesh");
@@ -129,7 +129,7 @@ class ShapeReader {
       problem(name, "a mesh is carried by a body, and \"" + bearer.name + "\" is a slide");
       return false;
     }
-    shape.form = Shape::Form::mesh;
+    shape.form = BodyShape::Form::mesh;
     shape.body = bearer.body;
     shape.mesh_file = std::filesystem::absolute(folder_ / text(name)).lexically_normal().string();
     const json& turn = member(value_, "turn");
@@ -147,7 +147,7 @@ class ShapeReader {
     return true;
   }
 
-  bool read_points(const Bearer& bearer, Shape& shape) {
+  bool read_points(const Bearer& bearer, BodyShape& shape) {
     for (const char* word : {"at", "turn"})
       if (value_.contains(word)) problem(value_[word], "has a meaning for meshes only");
     std::vector<Vector3> written;
@@ -168,7 +168,7 @@ class ShapeReader {
   }
 
   /// Line or plate, as written or as the points lie; leaves the corners in `points`.
-  bool form(Shape& shape, std::vector<Vector3>& points) {
+  bool form(BodyShape& shape, std::vector<Vector3>& points) {
     const Spread spread = spread_of(points);
     const json& word = member(value_, "form");
     const bool plate = word.is_null() ? !spread.normal.isZero() : word == "plate";
@@ -180,7 +180,7 @@ class ShapeReader {
       problem(word, "the points of a line must lie on one line; \"plate\" is their flat hull");
       return false;
     }
-    shape.form = plate ? Shape::Form::plate : Shape::Form::line;
+    shape.form = plate ? BodyShape::Form::plate : BodyShape::Form::line;
     if (plate) {
       const double most = kFlat * spread.size;
       if (std::ranges::any_of(points, [&](const Vector3& point) {
@@ -200,7 +200,7 @@ class ShapeReader {
     return true;
   }
 
-  bool read_slide(const Bearer& bearer, const std::vector<Vector3>& written, Shape& shape) {
+  bool read_slide(const Bearer& bearer, const std::vector<Vector3>& written, BodyShape& shape) {
     if (!written.empty() && written.size() != 2) {
       problem(value_["points"], "a rail or a telescope has two points, its ends");
       return false;
@@ -230,7 +230,7 @@ class ShapeReader {
   }
 
   /// A slide between two bodies with one more joint each: a line from the one joint to the other.
-  bool telescope(int slide, Shape& shape) const {
+  bool telescope(int slide, BodyShape& shape) const {
     const auto& bodies = mechanism_.joints[slide].bodies;
     const int first = other_joint(bodies[0], slide), last = other_joint(bodies[1], slide);
     if (first < 0 || last < 0) return false;
@@ -240,7 +240,7 @@ class ShapeReader {
   }
 
   /// Any other slide: the way of its point, fixed in the body that guides it.
-  bool rail(int slide, const std::vector<Vector3>& written, Shape& shape) {
+  bool rail(int slide, const std::vector<Vector3>& written, BodyShape& shape) {
     const Joint& joint = mechanism_.joints[slide];
     const bool backward = joint.bodies[1] == mechanism_.base;
     const int guiding = joint.bodies[backward ? 1 : 0];
@@ -261,11 +261,11 @@ class ShapeReader {
   }
 
   /// Takes off both ends of a line what belongs to its joints.
-  bool trim(Shape& shape) {
+  bool trim(BodyShape& shape) {
     const json& word = member(value_, "trim");
     if (word.is_null()) return true;
     const double off = reader_.length(word);
-    if (shape.form != Shape::Form::line || shape.points.size() != 2) {
+    if (shape.form != BodyShape::Form::line || shape.points.size() != 2) {
       problem(word, "only lines have ends that can be trimmed");
       return false;
     }

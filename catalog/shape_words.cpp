@@ -37,8 +37,8 @@ bool joins(const Joint& joint, int body) {
   return joint.bodies[0] == body || joint.bodies[1] == body;
 }
 
-std::set<int> bodies_of(const Shape& shape) {
-  if (shape.form == Shape::Form::mesh) return {shape.body};
+std::set<int> bodies_of(const BodyShape& shape) {
+  if (shape.form == BodyShape::Form::mesh) return {shape.body};
   std::set<int> bodies;
   for (const BodyPoint& point : shape.points) bodies.insert(point.body);
   return bodies;
@@ -60,7 +60,7 @@ bool joined(const Mechanism& mechanism, int a, int b) {
 }
 
 /// Whether `body` slides on the rail, or hangs on what slides there.
-bool rides(const Mechanism& mechanism, const Shape& rail, int body) {
+bool rides(const Mechanism& mechanism, const BodyShape& rail, int body) {
   if (rail.rail < 0) return false;
   const int carriage = other_body(mechanism.joints[rail.rail], rail.points.front().body);
   return body == carriage || std::ranges::any_of(mechanism.joints, [&](const Joint& joint) {
@@ -81,7 +81,7 @@ bool means(std::string_view word, std::string_view name) {
   return !limb.empty() && fits(word, limb);
 }
 
-Contact contact(const Mechanism& mechanism, const Shape& a, const Shape& b) {
+Contact contact(const Mechanism& mechanism, const BodyShape& a, const BodyShape& b) {
   Contact found = Contact::none;
   for (const int one : bodies_of(a))
     for (const int other : bodies_of(b)) {

@@ -17,7 +17,7 @@ namespace polyglide {
 /// of both are at one point of a third body, or one is the rail on which the other, or what
 /// carries it, slides.
 enum class Contact { none, joined, same_body };
-[[nodiscard]] Contact contact(const Mechanism& mechanism, const Shape& a, const Shape& b);
+[[nodiscard]] Contact contact(const Mechanism& mechanism, const BodyShape& a, const BodyShape& b);
 
 /// Points of a body at which joints other than slides connect it, each once.
 [[nodiscard]] std::vector<Vector3> joint_points(const Mechanism& mechanism, int body);

@@ -112,17 +112,17 @@ Json limit_to_json(const ExpressionLimit& limit) {
   return json;
 }
 
-Json shape_to_json(const Shape& shape, const Mechanism& mechanism) {
+Json shape_to_json(const BodyShape& shape, const Mechanism& mechanism) {
   const Units& units = mechanism.units;
   Json json{{"of", shape.name}};
   if (shape.radius > 0) json["diameter"] = in_unit(2 * shape.radius, units.metres);
-  if (shape.form == Shape::Form::mesh) {
+  if (shape.form == BodyShape::Form::mesh) {
     json["mesh"] = shape.mesh_file;
     json["at"] = in_unit(shape.mesh_at, units.metres);
     json["turn"] = in_unit(shape.mesh_turn, units.radians);
     return json;
   }
-  json["form"] = shape.form == Shape::Form::plate ? "plate" : "line";
+  json["form"] = shape.form == BodyShape::Form::plate ? "plate" : "line";
   for (const BodyPoint& point : shape.points)
     json["points"].push_back(in_unit(point.at, units.metres));
   return json;
@@ -144,7 +144,7 @@ Json to_json(const Mechanism& mechanism) {
   json["joints"] = Json::array();
   for (const Joint& joint : mechanism.joints)
     json["joints"].push_back(joint_to_json(joint, mechanism));
-  for (const Shape& shape : mechanism.shapes)
+  for (const BodyShape& shape : mechanism.shapes)
     json["shapes"].push_back(shape_to_json(shape, mechanism));
   for (const HalfSpaceLimit& limit : mechanism.limits)
     json["limits"].push_back(limit_to_json(limit, mechanism));
