@@ -12,15 +12,6 @@ namespace {
 
 using Pieces = std::vector<pieces::Piece<double>>;
 
-/// A line or plate cut into points, segments and triangles: their corners as indices of its points.
-std::vector<clearance::PieceData> cut(const BodyShape& shape) {
-  const int count = static_cast<int>(shape.points.size());
-  if (count <= 2) return {{count, {0, 1, 0}}};
-  std::vector<clearance::PieceData> result;
-  for (int k = 2; k < count; ++k) result.push_back({3, {0, k - 1, k}});
-  return result;
-}
-
 /// The pieces of a shape where `place` puts its points.
 template <typename Place>
 Pieces pieces_of(const BodyShape& shape, const Place& place) {
@@ -73,6 +64,14 @@ bool same(const LegPlace& a, const LegPlace& b) {
 }
 
 }  // namespace
+
+std::vector<clearance::PieceData> cut(const BodyShape& shape) {
+  const int count = static_cast<int>(shape.points.size());
+  if (count <= 2) return {{count, {0, 1, 0}}};
+  std::vector<clearance::PieceData> result;
+  for (int k = 2; k < count; ++k) result.push_back({3, {0, k - 1, k}});
+  return result;
+}
 
 double clearance_of(const Model& model, const Posture& posture, const std::array<int, 2>& pair) {
   return bare_distance(model, posture, pair) - radii(model.mechanism, pair);

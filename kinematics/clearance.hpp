@@ -32,6 +32,9 @@ struct WatchedPair {
 [[nodiscard]] std::vector<WatchedPair> watched_pairs(const Mechanism& mechanism,
                                                      const std::vector<std::string>& ignored);
 
+/// A line or plate cut into points, segments and triangles: their corners as indices of its points.
+[[nodiscard]] std::vector<clearance::PieceData> cut(const BodyShape& shape);
+
 /// Clearances of batches of poses of a leg machine whose shapes are all placed in closed form
 /// (shapes_are_placed()). Immutable.
 class BatchClearances {

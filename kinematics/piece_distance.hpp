@@ -45,19 +45,28 @@ struct Piece {
   [[nodiscard]] const Point<V>& to(int edge) const { return corner[(edge + 1) % corners]; }
 };
 
-/// Squared distance of the segments p–q and r–s. Parallel segments, and such of no length, are
-/// legal. (Ericson, Real-Time Collision Detection 2005, 5.1.9: nearest points of the lines,
-/// brought back to the segments one after the other.)
+/// Nearest points of the segments p–q and r–s: parts of the way from p to q and from r to s.
+/// Parallel segments, and such of no length, are legal. (Ericson, Real-Time Collision Detection
+/// 2005, 5.1.9: nearest points of the lines, brought back to the segments one after the other.)
 template <class V>
-inline V squared_distance(const Point<V>& p, const Point<V>& q, const Point<V>& r,
-                          const Point<V>& s) {
+inline void nearest_parts(const Point<V>& p, const Point<V>& q, const Point<V>& r,
+                          const Point<V>& s, V& along, V& onto) {
   const Point<V> u = q - p, v = s - r, w = p - r;
   const V a = dot(u, u), e = dot(v, v), b = dot(u, v), c = dot(u, w), f = dot(v, w);
   const V across = a * e - b * b;  // a·e·sin²
   const V first = select(across > V(1e-14) * a * e,
                          unit_interval((b * f - c * e) / max(across, V(kTiny))), V(0));
-  const V onto = unit_interval((b * first + f) / max(e, V(kTiny)));
-  const V along = unit_interval((b * onto - c) / max(a, V(kTiny)));
+  onto = unit_interval((b * first + f) / max(e, V(kTiny)));
+  along = unit_interval((b * onto - c) / max(a, V(kTiny)));
+}
+
+/// Squared distance of the segments p–q and r–s.
+template <class V>
+inline V squared_distance(const Point<V>& p, const Point<V>& q, const Point<V>& r,
+                          const Point<V>& s) {
+  V along, onto;
+  nearest_parts(p, q, r, s, along, onto);
+  const Point<V> u = q - p, v = s - r, w = p - r;
   const Point<V> gap{w.x + u.x * along - v.x * onto, w.y + u.y * along - v.y * onto,
                      w.z + u.z * along - v.z * onto};
   return dot(gap, gap);
