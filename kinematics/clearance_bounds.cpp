@@ -60,6 +60,10 @@ Nearest nearest(const Piece& a, const Piece& b) {
 
 double infinity() { return std::numeric_limits<double>::infinity(); }
 
+IntervalVector difference(const IntervalVector& a, const IntervalVector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
 /// The common hull.
 Interval joined(const Interval& a, const Interval& b) {
   return {std::min(a.lower(), b.lower()), std::max(a.upper(), b.upper())};
@@ -191,15 +195,11 @@ LimitBound LegBounds::enclose_pair(const Clearance& pair, const Place& whole,
   };
   const Moved from = point(a, near.a), to = point(b, near.b);
   IntervalVector gap, way;
-  for (int i = 0; i < 3; ++i) gap[i] = to.at[i] - from.at[i];
+  gap = difference(to.at, from.at);
   const Interval most = root(squared_norm(gap));
   for (int i = 0; i < 3; ++i)
     way[i] = most.lower() > 0 ? common(gap[i] / most, Interval(-1, 1)) : Interval(-1, 1);
-  for (int k = 0; k < 6; ++k) {
-    IntervalVector change;
-    for (int i = 0; i < 3; ++i) change[i] = to.by[k][i] - from.by[k][i];
-    bound.gradient[k] = -dot(way, change);
-  }
+  for (int k = 0; k < 6; ++k) bound.gradient[k] = -dot(way, difference(to.by[k], from.by[k]));
 
   // Lower bound: a plane between them, across the gap in the middle of the box.
   Vector3 normal = Vector3::Zero();
@@ -216,18 +216,23 @@ LimitBound LegBounds::enclose_pair(const Clearance& pair, const Place& whole,
   const Interval norm = root(dot(normal, normal));
   double least = 0;
   if (norm.lower() > 0) {
-    least = infinity();
+    std::vector<Interval> heights;
+    double nearest_at_most = infinity();
     for (const Moved& one : a)
       for (const Moved& other : b) {
-        IntervalVector between;
-        for (int i = 0; i < 3; ++i) between[i] = other.at[i] - one.at[i];
-        least = std::min(least, (dot(normal, between) / norm).lower());
-        for (int k = 0; k < 6; ++k) {
-          IntervalVector change;
-          for (int i = 0; i < 3; ++i) change[i] = other.by[k][i] - one.by[k][i];
-          bound.gradient[k] = joined(bound.gradient[k], -(dot(normal, change) / norm));
-        }
+        heights.push_back(dot(normal, difference(other.at, one.at)) / norm);
+        nearest_at_most = std::min(nearest_at_most, heights.back().upper());
       }
+    least = infinity();
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+      least = std::min(least, heights[i].lower());
+      // Corners that are never the nearest ones to the plane do not tell how the limit changes.
+      if (heights[i].lower() > nearest_at_most) continue;
+      const Moved &one = a[i / b.size()], &other = b[i % b.size()];
+      for (int k = 0; k < 6; ++k)
+        bound.gradient[k] =
+            joined(bound.gradient[k], -(dot(normal, difference(other.by[k], one.by[k])) / norm));
+    }
   }
   bound.value = pair.apart - Interval(std::min(least, most.upper()), most.upper());
   // No plane says more than that a distance is not negative: that does not change with the pose.
