@@ -93,7 +93,7 @@ void certify(Workspace& result, const Machine& machine, const WorkspaceOptions& 
   const double tolerance = std::max(kOfAccuracy * options.accuracy, 1e-4);
   // Bounds made by clearances close slowly; where they stay wide, sampled ones say more.
   constexpr double kWidest = 0.05;
-  constexpr int kBudget = 600000, kBudgetOfClearances = 60000;
+  constexpr int kBudget = 600000, kBudgetOfClearances = 20000;
   const bool clearances = !watched_pairs(machine.model.mechanism, options.ignored).empty();
   const auto proved = certify_volume(machine, options.ignored, options.rotation, reach, tolerance,
                                      clearances ? kBudgetOfClearances : kBudget);

@@ -363,7 +363,9 @@ TEST(Clearances, OfTheExampleMachineAreThoseOfABruteForceLoop) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (without.limit[i] >= 0) continue;
     const double room = by_hand.room({poses.x[i], poses.y[i], poses.z[i]});
-    if (std::abs(room) > 1e-7) EXPECT_EQ(result.limit[i]<0, room> 0) << i << ": " << room;
+    if (std::abs(room) > 1e-7) {
+      EXPECT_EQ(result.limit[i] < 0, room > 0) << i << ": " << room;
+    }
     ++before;
     inside += room > 0;
   }
@@ -417,7 +419,7 @@ TEST(ClearanceCertificates, AreHonestForRodsRailsAndPlates) {
 TEST(ClearanceCertificates, AreHonestForTelescopesOfATurnedPlatform) {
   expect_honest_certificates(with("hexapod-6ups", R"({
     "shapes": [{"of": "strut*.strut", "diameter": 40, "trim": 60}],
-    "limits": [{"name": "apart", "clearance": 290}]})"),
+    "limits": [{"name": "apart", "clearance": 302}]})"),
                              0.2, 0.01, 0.01);
 }
 
