@@ -238,6 +238,12 @@ void check_numbers(const Mechanism& mechanism, const std::vector<JointDraft>& dr
     if (!finite)
       problems.add(member(document, "limits"), "limit " + limit.name + " lacks a number");
   }
+  for (const BodyShape& shape : mechanism.shapes) {
+    bool finite = std::isfinite(shape.radius);
+    for (const BodyPoint& point : shape.points) finite = finite && point.at.allFinite();
+    if (!finite)
+      problems.add(member(document, "shapes"), "the shape of " + shape.name + " lacks a number");
+  }
 }
 
 }  // namespace
@@ -264,6 +270,7 @@ Mechanism assemble(const Layout& layout, const ParameterValues& values, Problems
 
   const Reader reader(problems, scope, layout.units);
   mechanism.tool = reader.offset(member(document, "tool"), Compass{});
+  read_shapes(layout, reader, mechanism);
   read_limits(layout, reader, mechanism);
   check_numbers(mechanism, drafts, document, problems);
   return mechanism;

@@ -31,7 +31,10 @@ void expand_limb(const nlohmann::json& limb, Scope& scope, const Units& units, P
                  const std::array<std::string, 2>& base_and_platform,
                  std::vector<JointDraft>& joints);
 
-/// Reads the limits of a machine whose joints are already there.
+/// Reads the shapes of a machine whose joints are already there.
+void read_shapes(const Layout& layout, const Reader& reader, Mechanism& mechanism);
+
+/// Reads the limits of a machine whose joints and shapes are already there.
 void read_limits(const Layout& layout, const Reader& reader, Mechanism& mechanism);
 
 /// expand() without raising: what is wrong goes to `problems`, and then the

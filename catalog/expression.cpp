@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t kLongest = 500;
 constexpr std::size_t kMostCompiled = 2048;  ///< per thread; then it starts anew
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::array kReserved = {"sin",   "cos",  "tan", "asin", "acos", "atan",
-                                  "atan2", "sqrt", "abs", "min",  "max",  "pi"};
+constexpr std::array kReserved = {"sin",  "cos", "tan",   "asin", "acos", "atan", "atan2",
+                                  "sqrt", "abs", "hypot", "min",  "max",  "pi"};
 
 bool starts_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool in_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
@@ -88,6 +88,8 @@ mu::Parser bare_parser(bool degrees) {
   parser.DefineFun(
       "abs", +[](double x) { return std::abs(x); });
   parser.DefineFun(
+      "hypot", +[](double x, double y) { return std::hypot(x, y); });
+  parser.DefineFun(
       "min", +[](double x, double y) { return std::min(x, y); });
   parser.DefineFun(
       "max", +[](double x, double y) { return std::max(x, y); });
@@ -131,17 +133,25 @@ Evaluation failed(std::string error, std::string hint = "") {
 
 constexpr std::string_view kPunctuation = " .+-*/^(),";
 
-/// What can be told about a text before it is parsed; "" when nothing is wrong.
-Evaluation check_text(const std::string& text, const Scope& scope) {
+/// What can be told about the characters of a text; "" when nothing is wrong.
+std::string check_characters(const std::string& text) {
   if (text.size() > kLongest)
-    return failed(fmt::format("an expression must have at most {} characters", kLongest));
+    return fmt::format("an expression must have at most {} characters", kLongest);
   const auto odd = std::ranges::find_if(
       text, [](char c) { return !in_name(c) && kPunctuation.find(c) == std::string_view::npos; });
-  if (odd != text.end())
-    return failed(
-        fmt::format("an expression has numbers, names and + - * / ^ ( ) only; "
-                    "character {} is not allowed",
-                    odd - text.begin() + 1));
+  if (odd == text.end()) return "";
+  return fmt::format(
+      "an expression has numbers, names and + - * / ^ ( ) only; character {} is not allowed",
+      odd - text.begin() + 1);
+}
+
+std::string no_expression(const mu::Parser::exception_type& error) {
+  return "must be an expression without mistakes: " + error.GetMsg();
+}
+
+/// What can be told about a text before it is parsed; "" when nothing is wrong.
+Evaluation check_text(const std::string& text, const Scope& scope) {
+  if (const std::string wrong = check_characters(text); !wrong.empty()) return failed(wrong);
   for (const std::string& name : names_in(text)) {
     if (scope.find(name) != nullptr) continue;
     std::vector<std::string> known(kReserved.begin(), kReserved.end());
@@ -169,7 +179,7 @@ Evaluation evaluate(const std::string& text, const Scope& scope) {
     try {
       found = cache.emplace(text, compile_expression(text, scope.degrees)).first;
     } catch (const mu::Parser::exception_type& error) {
-      return failed("must be an expression without mistakes: " + error.GetMsg());
+      return failed(no_expression(error));
     }
   }
   Compiled& compiled = *found->second;
@@ -182,6 +192,55 @@ Evaluation evaluate(const std::string& text, const Scope& scope) {
   const double value = compiled.parser.Eval();
   if (!std::isfinite(value)) return failed("an expression must give a finite number");
   return {value, "", ""};
+}
+
+std::string mistake_in(const std::string& text, bool degrees) {
+  if (std::string wrong = check_characters(text); !wrong.empty()) return wrong;
+  try {
+    compile_expression(text, degrees);
+  } catch (const mu::Parser::exception_type& error) {
+    return no_expression(error);
+  }
+  return "";
+}
+
+void evaluate(const std::string& text, bool degrees, const Columns& columns, std::size_t count,
+              double* values) {
+  Cache& cache = compiled_expressions(degrees);
+  auto found = cache.find(text);
+  if (found == cache.end()) {
+    if (cache.size() >= kMostCompiled) cache.clear();
+    found = cache.emplace(text, compile_expression(text, degrees)).first;
+  }
+  Compiled& compiled = *found->second;
+  std::vector<std::pair<double*, const double*>> used;
+  for (std::size_t k = 0; k < compiled.names.size(); ++k)
+    for (const auto& [name, column] : columns)
+      if (name == compiled.names[k]) used.emplace_back(&compiled.slots[k], column);
+  // muParser's own bulk mode would start threads within ours.
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const auto& [slot, column] : used) *slot = column[i];
+    values[i] = compiled.parser.Eval();
+  }
+}
+
+std::string with_words(
+    std::string_view text,
+    const std::function<std::optional<std::string>(const std::string&)>& replace) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    std::size_t end = i;
+    if (starts_name(text[i])) {
+      while (end < text.size() && (in_name(text[end]) || text[end] == '.')) ++end;
+      const std::string word(text.substr(i, end - i));
+      result += is_reserved_name(word) ? word : replace(word).value_or(word);
+    } else {
+      end += std::max<std::size_t>(1, number_length(text.substr(i)));
+      result += text.substr(i, end - i);
+    }
+    i = end;
+  }
+  return result;
 }
 
 std::vector<std::string> names_in(std::string_view text) {

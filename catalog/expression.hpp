@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,14 +30,32 @@ struct Evaluation {
 };
 
 /// Evaluates "R*cos(30) + w/2": numbers, names of the scope, + - * / ^ ( ), the
-/// constant pi, and sin cos tan asin acos atan atan2 sqrt abs min max. Powers
+/// constant pi, and sin cos tan asin acos atan atan2 sqrt abs hypot min max. Powers
 /// bind before signs: -2^2 = -4. At most 500 characters.
 /// Thread-safe; each thread keeps what it has compiled, so the same text again
 /// costs about 0.2 µs.
 [[nodiscard]] Evaluation evaluate(const std::string& text, const Scope& scope);
 
+/// What is wrong with an expression whatever its names stand for, as a rule; "" when nothing is.
+[[nodiscard]] std::string mistake_in(const std::string& text, bool degrees);
+
+/// Names with their values at many points, one array each.
+using Columns = std::vector<std::pair<std::string, const double*>>;
+
+/// The values at `count` points of an expression without mistake_in(). What has
+/// no value at a point gives NaN or an infinity there. About 0.05 µs a point.
+/// @param columns the names that the text uses; others are not read.
+void evaluate(const std::string& text, bool degrees, const Columns& columns, std::size_t count,
+              double* values);
+
 /// The names an expression uses, without functions and pi, in order of appearance.
 [[nodiscard]] std::vector<std::string> names_in(std::string_view text);
+
+/// The text with every word for which `replace` has a text replaced by it. Words are names
+/// that may hold points, such as "leg1.guide"; functions and pi are left alone.
+[[nodiscard]] std::string with_words(
+    std::string_view text,
+    const std::function<std::optional<std::string>(const std::string&)>& replace);
 
 /// Is this word a function or constant of expressions, so not free for a parameter?
 [[nodiscard]] bool is_reserved_name(std::string_view word);

@@ -130,7 +130,7 @@ bool holds_word(const std::string& key) {
   static constexpr std::array kWords = {
       "name", "title", "about",   "source",    "label",     "format", "units",    "joint",  "type",
       "form", "side",  "between", "body",      "unit",      "base",   "platform", "points", "axis",
-      "axes", "along", "toward",  "direction", "cone_axis", "choose", "$schema"};
+      "axes", "along", "toward",  "direction", "cone_axis", "choose", "$schema",  "of",     "mesh"};
   return std::ranges::find(kWords, key) != kWords.end();
 }
 

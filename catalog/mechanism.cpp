@@ -50,4 +50,16 @@ std::optional<JointType> joint_type(std::string_view word) {
   return static_cast<JointType>(found - words.begin());
 }
 
+std::string clearance_name(const Mechanism& mechanism, const std::array<int, 2>& pair) {
+  return "clearance " + mechanism.shapes[pair[0]].name + ' ' + mechanism.shapes[pair[1]].name;
+}
+
+std::vector<std::string> listed_limits(const Mechanism& mechanism) {
+  std::vector<std::string> names;
+  for (const HalfSpaceLimit& limit : mechanism.limits) names.push_back(limit.name);
+  for (const ExpressionLimit& limit : mechanism.expressions) names.push_back(limit.name);
+  for (const ClearanceLimit& limit : mechanism.clearances) names.push_back(limit.name);
+  return names;
+}
+
 }  // namespace polyglide

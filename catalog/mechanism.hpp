@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -76,6 +77,48 @@ struct HalfSpaceLimit {
   std::vector<Plane> planes;
 };
 
+/// A point fixed in a body.
+struct BodyPoint {
+  int body = 0;
+  Vector3 at = Vector3::Zero();  ///< base frame at home [m]
+};
+
+struct Mesh;
+
+/// The room that a body takes, for clearances: a line, a flat convex plate or a surface, thickened
+/// all round by a radius. A shape bears the name of its body; that of a rail (fixed in the body
+/// that guides) or of a telescope (whose two ends are on two bodies) bears the slide's name.
+struct BodyShape {
+  enum class Form { line, plate, mesh };
+  std::string name;
+  Form form = Form::line;
+  std::vector<BodyPoint> points;  ///< line: its two ends (a ball: one); plate: corners around it
+  double radius = 0;              ///< [m], 0 or more
+  int rail = -1;                  ///< joint that slides along it, -1 when it is no rail
+  int body = 0;                   ///< mesh: the body that carries it
+  std::string mesh_file;          ///< mesh: where it was read
+  double mesh_turn = 0;           ///< mesh: about base z [rad], before it is moved
+  Vector3 mesh_at = Vector3::Zero();  ///< mesh: where its origin is, base frame at home [m]
+  std::shared_ptr<const Mesh> mesh;   ///< in the base frame at home; set for meshes
+};
+
+/// Pairs of shapes that must keep a distance from each other.
+struct ClearanceLimit {
+  std::string name;
+  double distance = 0;                      ///< [m], between surfaces, 0 or more
+  std::array<std::string, 2> between;       ///< words for the shapes, as written; empty: all
+  bool joined = false;                      ///< pairs that a joint connects count, too
+  std::vector<std::array<int, 2>> pairs{};  ///< indices into Mechanism::shapes, the smaller first
+};
+
+/// min <= expression <= max, over x y z (tool displacement), a b c (rotation) and q1 q2 … (drives),
+/// all from home and in the units of the file.
+struct ExpressionLimit {
+  std::string name;
+  std::string expression;  ///< parameters and joint names replaced
+  Range range;
+};
+
 /// Units of a file, kept so that people read back what they wrote.
 struct Units {
   std::string length = "mm";
@@ -95,6 +138,16 @@ struct Mechanism {
   Vector3 tool = Vector3::Zero();  ///< tool point at home, base frame [m]
   std::vector<Joint> joints;
   std::vector<HalfSpaceLimit> limits;
+  std::vector<ExpressionLimit> expressions;
+  std::vector<BodyShape> shapes;
+  std::vector<ClearanceLimit> clearances;
 };
+
+/// "clearance leg1.rod leg2.rod": how the limit of one pair of shapes is called.
+[[nodiscard]] std::string clearance_name(const Mechanism& mechanism,
+                                         const std::array<int, 2>& pair);
+
+/// Names of the limits that a file lists under `limits`.
+[[nodiscard]] std::vector<std::string> listed_limits(const Mechanism& mechanism);
 
 }  // namespace polyglide

@@ -38,6 +38,7 @@ class Reader {
 
   [[nodiscard]] Problems& problems() const { return problems_; }
   [[nodiscard]] const Units& units() const { return units_; }
+  [[nodiscard]] const Scope& scope() const { return scope_; }
 
   /// A number or an expression, as written.
   [[nodiscard]] double number(const nlohmann::json& value) const;

@@ -98,6 +98,36 @@ Json limit_to_json(const HalfSpaceLimit& limit, const Mechanism& mechanism) {
   return json;
 }
 
+Json limit_to_json(const ClearanceLimit& limit, const Mechanism& mechanism) {
+  Json json{{"name", limit.name}, {"clearance", in_unit(limit.distance, mechanism.units.metres)}};
+  if (!limit.between[0].empty()) json["between"] = limit.between;
+  if (limit.joined) json["joined"] = true;
+  return json;
+}
+
+Json limit_to_json(const ExpressionLimit& limit) {
+  Json json{{"name", limit.name}, {"expression", limit.expression}};
+  if (std::isfinite(limit.range.min)) json["min"] = tidy(limit.range.min);
+  if (std::isfinite(limit.range.max)) json["max"] = tidy(limit.range.max);
+  return json;
+}
+
+Json shape_to_json(const BodyShape& shape, const Mechanism& mechanism) {
+  const Units& units = mechanism.units;
+  Json json{{"of", shape.name}};
+  if (shape.radius > 0) json["diameter"] = in_unit(2 * shape.radius, units.metres);
+  if (shape.form == BodyShape::Form::mesh) {
+    json["mesh"] = shape.mesh_file;
+    json["at"] = in_unit(shape.mesh_at, units.metres);
+    json["turn"] = in_unit(shape.mesh_turn, units.radians);
+    return json;
+  }
+  json["form"] = shape.form == BodyShape::Form::plate ? "plate" : "line";
+  for (const BodyPoint& point : shape.points)
+    json["points"].push_back(in_unit(point.at, units.metres));
+  return json;
+}
+
 }  // namespace
 
 Json to_json(const Mechanism& mechanism) {
@@ -114,7 +144,13 @@ Json to_json(const Mechanism& mechanism) {
   json["joints"] = Json::array();
   for (const Joint& joint : mechanism.joints)
     json["joints"].push_back(joint_to_json(joint, mechanism));
+  for (const BodyShape& shape : mechanism.shapes)
+    json["shapes"].push_back(shape_to_json(shape, mechanism));
   for (const HalfSpaceLimit& limit : mechanism.limits)
+    json["limits"].push_back(limit_to_json(limit, mechanism));
+  for (const ExpressionLimit& limit : mechanism.expressions)
+    json["limits"].push_back(limit_to_json(limit));
+  for (const ClearanceLimit& limit : mechanism.clearances)
     json["limits"].push_back(limit_to_json(limit, mechanism));
   return json;
 }

@@ -64,8 +64,6 @@ ordered_json describe(const CatalogRow& row) {
                           {"unit", unit_of(parameter, layout.units)},
                           {"about", parameter.about}});
   }
-  ordered_json limits = ordered_json::array();
-  for (const HalfSpaceLimit& limit : mechanism.limits) limits.push_back(limit.name);
   const std::vector<std::string> drives = drive_names(mechanism);
   return {
       {"name", layout.name},
@@ -78,7 +76,7 @@ ordered_json describe(const CatalogRow& row) {
       {"drives", {{"count", drives.size()}, {"names", drives}, {"kinds", drive_kinds(mechanism)}}},
       {"bodies", mechanism.bodies.size()},
       {"joints", mechanism.joints.size()},
-      {"limits", limits},
+      {"limits", listed_limits(mechanism)},
       {"parameters", parameters}};
 }
 

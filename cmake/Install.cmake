@@ -34,5 +34,5 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
-    "chromium-headless-shell, libboost-dev, libeigen3-dev, nlohmann-json3-dev, libtbb-dev, libnlopt-cxx-dev, libfmt-dev, liblapacke-dev, libmuparser-dev, libsqlitecpp-dev, libnauty2-dev")
+    "chromium-headless-shell, libboost-dev, libeigen3-dev, nlohmann-json3-dev, libtbb-dev, libnlopt-cxx-dev, libfcl-dev, libfmt-dev, liblapacke-dev, libmuparser-dev, libsqlitecpp-dev, libnauty2-dev")
 include(CPack)

@@ -80,6 +80,7 @@ BatchModel::BatchModel(const Machine& machine, const std::vector<std::string>& i
                         [](const LegData& leg) { return leg.primary; });
   for (const HalfSpaceLimit& limit : machine.model.mechanism.limits)
     add_limit(machine, limit, ignored);
+  for (const std::string& name : late_limit_names(machine.model.mechanism, ignored)) add_name(name);
   all_.motion = add_name("motion");
   all_.not_finite = add_name("not finite");
 

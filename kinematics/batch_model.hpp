@@ -24,7 +24,7 @@ class BatchModel {
   BatchModel(const Machine& machine, const std::vector<std::string>& ignored);
 
   /// Leg by leg "reach …", "stroke … min", "stroke … max", "cone …"; then
-  /// half-space limits; "motion"; "not finite" last.
+  /// half-space limits; late_limit_names(), which the kernel does not know; "motion"; "not finite".
   [[nodiscard]] const std::vector<std::string>& limit_names() const { return limit_names_; }
 
   /// For poses with rotations of their own.

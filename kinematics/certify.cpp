@@ -7,7 +7,9 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "kinematics/clearance.hpp"
 #include "kinematics/leg_bounds.hpp"
+#include "kinematics/limits.hpp"
 
 namespace polyglide {
 namespace {
@@ -135,6 +137,20 @@ class Prover {
   double condition_;
 };
 
+/// Why there are no enclosures.
+std::string no_enclosure(const Machine& machine, const std::vector<std::string>& ignored) {
+  const Mechanism& mechanism = machine.model.mechanism;
+  for (const ExpressionLimit& limit : mechanism.expressions)
+    if (!is_ignored(limit.name, ignored))
+      return fmt::format("the expression of limit \"{}\" cannot be enclosed by intervals",
+                         limit.name);
+  for (const WatchedPair& pair : watched_pairs(mechanism, ignored))
+    for (const int shape : pair.shapes)
+      if (mechanism.shapes[shape].form == BodyShape::Form::mesh)
+        return fmt::format("the mesh in \"{}\" cannot be enclosed by intervals", pair.name);
+  return "this machine's inverse kinematics has no closed form that intervals can enclose";
+}
+
 BoxCertificate undecided(const std::string& reason) {
   BoxCertificate result;
   result.reason = reason;
@@ -242,9 +258,7 @@ BoxCertificate certify_box(const Machine& machine, const PoseRegion& region,
   {
     const UpwardRounding rounding;
     limits = LegBounds::make(machine, ignored, Eigen::Quaterniond::Identity(), region.tilt > 0);
-    if (!limits)
-      return undecided(
-          "this machine's inverse kinematics has no closed form that intervals can enclose");
+    if (!limits) return undecided(no_enclosure(machine, ignored));
     PoseBox home;
     home.fill(Interval(0.0));
     const IntervalMatrix jacobian = limits->jacobian(home);

@@ -9,6 +9,8 @@
 
 #include "kinematics/batch_kernels.hpp"
 #include "kinematics/batch_model.hpp"
+#include "kinematics/clearance.hpp"
+#include "kinematics/expression_limits.hpp"
 #include "kinematics/limits.hpp"
 
 namespace polyglide {
@@ -29,6 +31,7 @@ std::vector<std::string> general_limit_names(const Machine& machine) {
     if (joint.cone) add("cone " + joint.name);
   }
   for (const HalfSpaceLimit& limit : machine.model.mechanism.limits) add(limit.name);
+  for (const std::string& name : late_limit_names(machine.model.mechanism)) add(name);
   add("motion");
   add("not finite");
   return names;
@@ -62,25 +65,6 @@ void check(const PoseBatch& poses) {
   for (const auto& part : poses.quaternion)
     check_length(part.size(), poses.size(), poses.quaternion[0].empty(),
                  "a column of the quaternion");
-}
-
-bool has_rotations(const PoseBatch& poses) {
-  return !poses.quaternion[0].empty() ||
-         std::any_of(poses.angles.begin(), poses.angles.end(),
-                     [](const auto& angle) { return !angle.empty(); });
-}
-
-Pose pose_at(const PoseBatch& poses, std::size_t i) {
-  const Vector3 at(poses.x[i], poses.y[i], poses.z[i]);
-  if (!has_rotations(poses)) return {at, poses.rotation};
-  if (!poses.quaternion[0].empty()) {
-    const auto& q = poses.quaternion;
-    return {at, Eigen::Quaterniond(q[0][i], q[1][i], q[2][i], q[3][i]).normalized()};
-  }
-  Eigen::Matrix<double, 6, 1> coordinates;
-  coordinates.head<3>() = at;
-  for (int k = 0; k < 3; ++k) coordinates[3 + k] = poses.angles[k].empty() ? 0 : poses.angles[k][i];
-  return pose_of(coordinates);
 }
 
 void make_columns(const Machine& machine, const PoseBatch& poses, BatchResult& result) {
@@ -270,6 +254,25 @@ void clear_at(std::size_t i, BatchResult& result) {
 
 }  // namespace
 
+bool has_rotations(const PoseBatch& poses) {
+  return !poses.quaternion[0].empty() ||
+         std::any_of(poses.angles.begin(), poses.angles.end(),
+                     [](const auto& angle) { return !angle.empty(); });
+}
+
+Pose pose_at(const PoseBatch& poses, std::size_t i) {
+  const Vector3 at(poses.x[i], poses.y[i], poses.z[i]);
+  if (!has_rotations(poses)) return {at, poses.rotation};
+  if (!poses.quaternion[0].empty()) {
+    const auto& q = poses.quaternion;
+    return {at, Eigen::Quaterniond(q[0][i], q[1][i], q[2][i], q[3][i]).normalized()};
+  }
+  Eigen::Matrix<double, 6, 1> coordinates;
+  coordinates.head<3>() = at;
+  for (int k = 0; k < 3; ++k) coordinates[3 + k] = poses.angles[k].empty() ? 0 : poses.angles[k][i];
+  return pose_of(coordinates);
+}
+
 Evaluator::Evaluator(const Machine& machine, const std::vector<std::string>& ignored)
     : machine_(machine), ignored_(ignored) {
   const bool fits = machine_.model.drives.size() <= batch::kMostDrives;
@@ -282,6 +285,12 @@ Evaluator::Evaluator(const Machine& machine, const std::vector<std::string>& ign
     }
     model_ = std::make_shared<const BatchModel>(machine_, ignored_);
     limit_names_ = model_->limit_names();
+    const auto expressions =
+        std::make_shared<const BatchExpressions>(machine_.model, ignored_, limit_names_);
+    const auto clearances =
+        std::make_shared<const BatchClearances>(machine_, ignored_, limit_names_);
+    if (!expressions->empty()) expressions_ = expressions;
+    if (!clearances->empty()) clearances_ = clearances;
   } else {
     limit_names_ = general_limit_names(machine_);
   }
@@ -295,20 +304,42 @@ int Evaluator::limit_index(const std::string& name) const {
 void Evaluator::evaluate(const PoseBatch& poses, BatchResult& result) const {
   check(poses);
   make_columns(machine_, poses, result);
-  if (model_)
-    evaluate_legs(poses, result);
-  else
+  if (!model_) {
     evaluate_general(poses, result);
+    return;
+  }
+  // Late limits ask for drives, whether or not they are wanted.
+  const bool late = expressions_ || clearances_, drives = (poses.wanted & Wanted::drives) != 0;
+  if (late) result.drives.resize(poses.size() * machine_.model.drives.size());
+  evaluate_legs(poses, result);
+  if (late && !drives) result.drives.clear();
+}
+
+void Evaluator::check_late_limits(const PoseBatch& poses, std::size_t first, std::size_t last,
+                                  BatchResult& result) const {
+  if (!expressions_ && !clearances_) return;
+  std::vector<char> stopped(last - first);
+  for (std::size_t i = first; i < last; ++i) stopped[i - first] = result.limit[i] >= 0;
+  if (expressions_) expressions_->check(poses, first, last, result);
+  if (clearances_) clearances_->check(poses, first, last, result);
+  for (std::size_t i = first; i < last; ++i)
+    if (!stopped[i - first] && result.limit[i] >= 0) clear_at(i, result);
 }
 
 void Evaluator::evaluate_legs(const PoseBatch& poses, BatchResult& result) const {
+  const auto run = [&](const KernelRun& kernel) {
+    in_blocks(poses.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      kernel(first, last);
+      check_late_limits(poses, first, last, result);
+    });
+  };
   if (has_rotations(poses)) {
-    in_blocks(poses.size(), kGrain, KernelRun(model_->turning(), poses, result));
+    run(KernelRun(model_->turning(), poses, result));
     return;
   }
   if (poses.rotation.coeffs().allFinite() && model_->commands(poses.rotation)) {
     const batch::KernelModel model = model_->turned(poses.rotation);
-    in_blocks(poses.size(), kGrain, KernelRun(model, poses, result));
+    run(KernelRun(model, poses, result));
     return;
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -77,7 +77,15 @@ struct ForwardResult {
   std::vector<double> residual;
 };
 
+/// Whether the poses have rotations of their own.
+[[nodiscard]] bool has_rotations(const PoseBatch& poses);
+
+/// One pose of a batch.
+[[nodiscard]] Pose pose_at(const PoseBatch& poses, std::size_t i);
+
 class BatchModel;
+class BatchClearances;
+class BatchExpressions;
 
 /// Evaluates many poses of one machine. Leg machines with a pure task space (guide + rod,
 /// crank + rod, strut) run through a vector kernel chosen for the processor; the rest is
@@ -88,13 +96,13 @@ class BatchModel;
 class Evaluator {
  public:
   /// @param ignored limits that do not count, as in is_ignored(): a full name, a first word
-  ///        ("stroke", "cone") or the name of a half-space limit ("triangle").
+  ///        ("stroke", "cone", "clearance") or the name that the file gives a limit ("triangle").
   explicit Evaluator(const Machine& machine, const std::vector<std::string>& ignored = {});
 
   /// Human names of what can stop a pose: "reach leg1.rod" (just "reach" without closed form),
   /// "stroke leg1.guide min", "stroke leg1.guide max", "range …", "cone leg1.bottom",
-  /// "triangle", …; "motion": a coordinate that a pure machine cannot command; "not finite": a
-  /// coordinate that is no number.
+  /// "triangle", "clearance leg1.rod leg2.rod", …; "motion": a coordinate that a pure machine
+  /// cannot command; "not finite": a coordinate that is no number.
   [[nodiscard]] const std::vector<std::string>& limit_names() const { return limit_names_; }
 
   /// Cost per pose and core with AVX-512: about 10 ns (three translational legs) to 100 ns (six
@@ -119,6 +127,8 @@ class Evaluator {
 
  private:
   void evaluate_legs(const PoseBatch& poses, BatchResult& result) const;
+  void check_late_limits(const PoseBatch& poses, std::size_t first, std::size_t last,
+                         BatchResult& result) const;
   void evaluate_general(const PoseBatch& poses, BatchResult& result) const;
   void forward_legs(const DriveBatch& drives, ForwardResult& result) const;
   void forward_general(const DriveBatch& drives, ForwardResult& result) const;
@@ -128,6 +138,9 @@ class Evaluator {
   std::vector<std::string> ignored_;
   std::vector<std::string> limit_names_;
   std::shared_ptr<const BatchModel> model_;
+  // With the model only, and only where there are such limits.
+  std::shared_ptr<const BatchExpressions> expressions_;
+  std::shared_ptr<const BatchClearances> clearances_;
 };
 
 }  // namespace polyglide

@@ -1,6 +1,5 @@
 #include "kinematics/leg_bounds.hpp"
 
-#include "kinematics/interval_rotation.hpp"
 #include "kinematics/limits.hpp"
 
 namespace polyglide {
@@ -14,13 +13,6 @@ const Interval kAnything(-std::numeric_limits<double>::infinity(),
 double infinity() { return std::numeric_limits<double>::infinity(); }
 
 }  // namespace
-
-/// What the rotation of a box makes of the machine.
-struct LegBounds::Turned {
-  IntervalRotation rotation;
-  std::array<IntervalVector, 3> axes;  // about which the angles a, b, c turn
-  std::array<bool, 3> varies{};
-};
 
 std::size_t LegBounds::add(const std::string& name) {
   names_.push_back(name);
@@ -116,6 +108,12 @@ std::optional<LegBounds> LegBounds::make(const Machine& machine,
   std::stable_partition(result.rows_.begin(), result.rows_.end(),
                         [](const Row& row) { return row.primary; });
   result.add_planes(machine, ignored);
+  result.legs_ = legs.legs;
+  const auto& expressions = machine.model.mechanism.expressions;
+  if (std::any_of(expressions.begin(), expressions.end(),
+                  [&](const auto& limit) { return !is_ignored(limit.name, ignored); }) ||
+      !result.add_clearances(machine, ignored))
+    return std::nullopt;
   if (result.names_.size() > kMost) return std::nullopt;
   return result;
 }
@@ -266,6 +264,7 @@ void LegBounds::enclose(const PoseBox& box, const Mask& wanted,
           bound.gradient[3 + k] = plane.slope * dot(drive.row, cross(turning.axes[k], drive.arm));
     }
   }
+  enclose_clearances(box, wanted, bounds);
 }
 
 IntervalMatrix LegBounds::jacobian(const PoseBox& box) const { return matrix(box, false); }

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "kinematics/interval_matrix.hpp"
+#include "kinematics/interval_rotation.hpp"
+#include "kinematics/leg_places.hpp"
 #include "kinematics/solve.hpp"
 
 namespace polyglide {
@@ -19,6 +21,8 @@ struct LimitBound {
 
 /// The limits and the Jacobian of a leg machine, enclosed on boxes of poses. The same
 /// definitions as LegKernel's, 1e-9 of slack included. Needs UpwardRounding.
+/// Gradients enclose how a limit changes from the middle() of the box, for the value that enclose()
+/// gives there.
 ///
 /// Gradients are closed forms: with v from a rod's carriage joint at home to its platform joint, p
 /// its part across the guide g, h = sqrt(L² - p²): the drive is v·g + side·h and changes with g -
@@ -29,7 +33,8 @@ class LegBounds {
   using Mask = std::bitset<kMost>;
 
   /// nullopt for machines without closed form, or whose rods must agree about a carriage in a way
-  /// that intervals cannot prove, or with more than kMost limits.
+  /// that intervals cannot prove, or with more than kMost limits; or with one that has no
+  /// enclosure: an expression, or a clearance of a mesh.
   /// @param fixed applied before the box's rotation.
   /// @param turning whether boxes with other angles than zero will be asked.
   [[nodiscard]] static std::optional<LegBounds> make(const Machine& machine,
@@ -75,7 +80,19 @@ class LegBounds {
     int drive = -1;
     Interval slope;
   };
-  struct Turned;
+  /// Pieces of two shapes that must be `apart`.
+  struct Clearance {
+    std::size_t limit;
+    Interval apart;
+    std::vector<LegPlace> a, b;
+  };
+  /// What the rotation of a box makes of the machine.
+  struct Turned {
+    IntervalRotation rotation;
+    std::array<IntervalVector, 3> axes;  // about which the angles a, b, c turn
+    std::array<bool, 3> varies{};
+  };
+  struct Moved;
   struct Drive {
     Interval place;
     IntervalVector row;    // derivative of place by the joint's position
@@ -87,14 +104,30 @@ class LegBounds {
   std::size_t add(const std::string& name);
   void add_row(const Machine& machine, int index, const std::vector<std::string>& ignored);
   void add_planes(const Machine& machine, const std::vector<std::string>& ignored);
+  /// False when one cannot be enclosed.
+  bool add_clearances(const Machine& machine, const std::vector<std::string>& ignored);
   [[nodiscard]] Turned turn(const PoseBox& box) const;
   IntervalMatrix matrix(const PoseBox& box, bool scaled) const;
   Drive solve(const Row& row, const PoseBox& box, const Turned& turned, const Mask& wanted,
               std::vector<LimitBound>* bounds) const;
+  /// Where bodies are in a box.
+  struct Place {
+    PoseBox box;
+    Turned turning;
+    std::vector<Drive> drives;
+  };
+  [[nodiscard]] Place place(const PoseBox& box) const;
+  [[nodiscard]] Moved move(const LegPlace& corner, const Place& place) const;
+  void enclose_clearances(const PoseBox& box, const Mask& wanted,
+                          std::vector<LimitBound>& bounds) const;
+  [[nodiscard]] LimitBound enclose_pair(const Clearance& pair, const Place& whole,
+                                        const Place& middle) const;
 
   std::vector<std::string> names_;
   std::vector<Row> rows_;
   std::vector<Plane> planes_;
+  std::vector<Clearance> clearances_;
+  std::vector<Leg> legs_;
   Vector3 tool_ = Vector3::Zero();
   Eigen::Quaterniond fixed_ = Eigen::Quaterniond::Identity();
   std::vector<int> axes_;

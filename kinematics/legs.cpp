@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/leg_places.hpp"
+
 namespace polyglide {
 namespace {
 
@@ -153,10 +155,12 @@ class Recogniser {
 
   /// A limit may only concern bodies whose place follows from pose and drives.
   bool limits_are_closed_form(const LegMachine& machine) const {
-    return std::all_of(mechanism_.limits.begin(), mechanism_.limits.end(), [&](const auto& limit) {
+    const auto placed = [&](const auto& limit) {
       if (limit.body == mechanism_.base || limit.body == mechanism_.platform) return true;
       return carriage_leg(mechanism_, machine, limit.body) >= 0;
-    });
+    };
+    return std::all_of(mechanism_.limits.begin(), mechanism_.limits.end(), placed) &&
+           shapes_are_placed(mechanism_, machine);
   }
 
   const Model& model_;

@@ -36,7 +36,8 @@ struct LegMachine {
 
 /// Recognises such a machine; nullopt for any other (then the general solver
 /// is used). Makes a machine general: a limb without drive, a drive without limb,
-/// any other joint kind, a range on a passive joint, a half-space limit on a rod or strut.
+/// any other joint kind, a range on a passive joint, a half-space limit on a rod or strut,
+/// a shape beside the line of a rod or strut, or a mesh on one, that a clearance watches.
 [[nodiscard]] std::optional<LegMachine> recognise_legs(const Model& model);
 
 /// Index of a leg whose carriage is `body`, -1 when it is none's.

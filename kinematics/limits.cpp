@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/clearance.hpp"
+#include "kinematics/expression_limits.hpp"
+
 namespace polyglide {
 namespace {
 
@@ -44,6 +47,18 @@ bool is_ignored(const std::string& limit, const std::vector<std::string>& ignore
   });
 }
 
+std::vector<std::string> late_limit_names(const Mechanism& mechanism,
+                                          const std::vector<std::string>& ignored) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const ExpressionLimit& limit : mechanism.expressions)
+    if (!is_ignored(limit.name, ignored)) add(limit.name);
+  for (const WatchedPair& pair : watched_pairs(mechanism, ignored)) add(pair.name);
+  return names;
+}
+
 std::string broken_limit(const Model& model, const Posture& posture,
                          const std::vector<std::string>& ignored) {
   for (int j = 0; j < static_cast<int>(model.mechanism.joints.size()); ++j) {
@@ -55,7 +70,8 @@ std::string broken_limit(const Model& model, const Posture& posture,
   }
   for (const HalfSpaceLimit& limit : model.mechanism.limits)
     if (plane_broken(limit, posture) && !is_ignored(limit.name, ignored)) return limit.name;
-  return "";
+  const std::string expression = broken_expression(model, posture, ignored);
+  return expression.empty() ? broken_clearance(model, posture, ignored) : expression;
 }
 
 }  // namespace polyglide

@@ -4,6 +4,7 @@
 
 #include "catalog/elementary_motion.hpp"
 #include "catalog/spanning_tree.hpp"
+#include "kinematics/mesh_tree.hpp"
 
 namespace polyglide {
 namespace {
@@ -154,6 +155,8 @@ Model compile(const Mechanism& mechanism) {
                                 screw_of(motion, joint.at), motion.translation});
     for (int driven : joint.driven) model.drives.push_back(model.first_freedom.back() + driven);
   }
+  for (const BodyShape& shape : mechanism.shapes)
+    model.meshes.push_back(shape.mesh ? std::make_shared<const MeshTree>(*shape.mesh) : nullptr);
   build_tree(model);
   measure(model);
   return model;

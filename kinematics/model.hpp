@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "catalog/mechanism.hpp"
@@ -25,6 +26,8 @@ struct LoopStep {
   int sign = 1;  ///< +1: passed from bodies[0] to bodies[1], -1: the other way
 };
 
+class MeshTree;
+
 /// A mechanism prepared for computing: tree, loops, freedoms. Immutable after
 /// compile(); share it between threads. Posture data live in Posture.
 struct Model {
@@ -40,6 +43,7 @@ struct Model {
   std::vector<LoopStep> platform_path;  ///< joints from the base to the platform along the tree
   std::vector<int> loop_joints;         ///< joints not in the tree: one loop each
   std::vector<std::vector<LoopStep>> loops;  ///< per loop joint: the joints met once around
+  std::vector<std::shared_ptr<const MeshTree>> meshes;  ///< per shape; null for what is no mesh
 };
 
 /// Where everything is: joint coordinates from home, and the displacement of
@@ -52,6 +56,7 @@ struct Posture {
 
 /// Prepares a mechanism for computing.
 /// @throws std::invalid_argument when a body is not connected to the base.
+/// @throws InputError for meshes where polyglide was built without FCL.
 [[nodiscard]] Model compile(const Mechanism& mechanism);
 
 /// The assembled posture in which the mechanism is described.

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "catalog/json_file.hpp"
+#include "kinematics/clearance.hpp"
 
 namespace polyglide {
 namespace {
@@ -42,6 +43,15 @@ std::string machine_text(const Machine& machine) {
     result += limit.body == mechanism.platform ? "platform " : mechanism.bodies[limit.body] + ' ';
     for (const Vector3& point : limit.points) result += text(point);
     for (const auto& plane : limit.planes) result += text(plane.normal) + text(plane.offset);
+  }
+  for (const ExpressionLimit& limit : mechanism.expressions)
+    result += limit.expression + ' ' + text(limit.range.min) + text(limit.range.max);
+  for (const WatchedPair& pair : watched_pairs(mechanism, {})) {
+    result += pair.name + ' ' + text(pair.apart);
+    for (const int shape : pair.shapes) {
+      result += mechanism.shapes[shape].mesh_file;
+      for (const BodyPoint& point : mechanism.shapes[shape].points) result += text(point.at);
+    }
   }
   for (const int axis : machine.task.axes) result += fmt::format("axis {} ", axis);
   return result + text(machine.task.rotation_axis) + text(mechanism.tool) +

@@ -30,8 +30,8 @@ struct Family {
   [[nodiscard]] std::string known_as() const { return lead->known_as; }
 };
 
-/// All that inverse kinematics and limits depend on, as text: legs, cones, half-space
-/// limits, tool and task space, at the dimensions of the file and at another set; equal
+/// All that inverse kinematics and limits depend on, as text: legs, cones, limits of
+/// the file, tool and task space, at the dimensions of the file and at another set; equal
 /// for twins. Machines without closed-form legs have none ("").
 [[nodiscard]] std::string kinematic_signature(const Eligible& eligible);
 

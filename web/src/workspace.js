@@ -41,7 +41,7 @@ function areaOption(w, slice) {
   };
 }
 
-const LIMIT_WORDS = { reach: "rod cannot reach", stroke: "end of stroke", cone: "joint at its largest deflection" };
+const LIMIT_WORDS = { reach: "rod cannot reach", stroke: "end of stroke", cone: "joint at its largest deflection", clearance: "bodies too near" };
 
 /** Limits that bound the workspace, same kind on every leg added up, largest first. */
 function limits(w) {
@@ -49,7 +49,7 @@ function limits(w) {
   for (const [name, share] of Object.entries(w.limits_hit ?? {})) {
     const kind = name.split(" ")[0];
     const words = LIMIT_WORDS[kind];
-    const label = words ? `${words}: ${name.slice(kind.length + 1).replace(/(\D)\d+\./, "$1.")}` : name;
+    const label = words ? `${words}: ${name.slice(kind.length + 1).replace(/(\D)\d+\./g, "$1.")}` : name;
     sums.set(label, (sums.get(label) ?? 0) + share);
   }
   const rows = [...sums].sort((a, b) => b[1] - a[1]);
