@@ -13,7 +13,8 @@ namespace polyglide {
 namespace {
 
 constexpr double kDoubtfulGap = 1e3;  // contract: a smaller gap is said in the reasons
-constexpr double kDrawn = 1e-11;    // closure or rank noise above it comes from rounded coordinates
+constexpr double kDrawnNoise =
+    1e-11;                          // closure or rank noise above it comes from rounded coordinates
 constexpr double kMoved = 0.02;     // of a step: a platform that went less far has not moved
 constexpr double kWavering = 0.03;  // of the best conditioned posture's smallest singular value
 constexpr double kStep = 0.25;      // of a walk [rad, or length/size of the fastest joint]
@@ -269,7 +270,7 @@ void Analysis::decide() {
         fmt::format("{} constraint(s) are redundant: the machine moves only as far as its axes are "
                     "exactly parallel or intersecting as drawn.",
                     report_.redundant_constraints));
-  if (std::max(report_.noise, report_.residual) > kDrawn)
+  if (std::max(report_.noise, report_.residual) > kDrawnNoise)
     reasons.push_back(
         fmt::format("The drawing holds to about {:.0e} of the machine's size: what agrees to that "
                     "precision was "
