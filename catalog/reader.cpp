@@ -7,8 +7,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-const Vector3 kNoVector = Vector3::Constant(kNaN);
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+const Vector3 kNoVector = Vector3::Constant(kNoNumber);
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Vector3 unit_vector(const Vector3& vector) {
 
 double Reader::number(const json& value) const {
   if (value.is_number()) return value.get<double>();
-  if (!value.is_string()) return kNaN;
+  if (!value.is_string()) return kNoNumber;
   Evaluation result = evaluate(value.get_ref<const std::string&>(), scope_);
   if (!result.error.empty()) problems_.add(value, result.error, result.hint);
   return result.value;

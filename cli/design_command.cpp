@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kShownRows = 10;
 
-Json result_json(const Json& run, const std::string& report) {
+Json design_json(const Json& run, const std::string& report) {
   Json ranking = Json::array();
   for (const Json& entry : run.at("ranking")) {
     Json row;
@@ -48,7 +48,7 @@ void print_ranking(const Json& run) {
   std::cout << columns(rows);
 }
 
-void print_page(const Json& run, const std::string& report) {
+void print_design(const Json& run, const std::string& report) {
   const Json& counts = run.at("counts");
   std::cout << run.at("answer").get<std::string>() << "\n\n"
             << fmt::format(
@@ -86,9 +86,9 @@ int run_design(CommandLine& line) {
       run_design(brief, run_options(line, "design " + file, folder, progress));
   const std::string report = write_run(result.run, folder).string();
   if (line.json())
-    print_json(result_json(result.run, report));
+    print_json(design_json(result.run, report));
   else
-    print_page(result.run, report);
+    print_design(result.run, report);
   return result.satisfied ? kDone : kNothingSatisfies;
 }
 

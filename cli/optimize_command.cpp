@@ -18,7 +18,7 @@ Json side_json(const Json& entry) {
           {"parameters", entry.at("parameters")}};
 }
 
-Json result_json(const Json& run, const std::string& report) {
+Json study_json(const Json& run, const std::string& report) {
   const Json &best = run.at("ranking").at(0), &given = run.at("ranking").at(1);
   const double before = given.at("score"), after = best.at("score");
   return {{"name", run.at("name")},
@@ -31,7 +31,7 @@ Json result_json(const Json& run, const std::string& report) {
           {"seconds", run.at("provenance").at("seconds")}};
 }
 
-void print_page(const Json& run, const std::string& report) {
+void print_study(const Json& run, const std::string& report) {
   std::cout << run.at("answer").get<std::string>() << "\n\n";
   std::vector<std::vector<std::string>> rows{{"dimension", "as it stands", "tuned"}};
   const Json &best = run.at("ranking").at(0), &given = run.at("ranking").at(1);
@@ -65,9 +65,9 @@ int run_optimize(CommandLine& line) {
       run_study(study, run_options(line, "optimize " + file, folder, progress));
   const std::string report = write_run(result.run, folder).string();
   if (line.json())
-    print_json(result_json(result.run, report));
+    print_json(study_json(result.run, report));
   else
-    print_page(result.run, report);
+    print_study(result.run, report);
   return result.satisfied ? kDone : kNothingSatisfies;
 }
 

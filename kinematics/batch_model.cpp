@@ -16,9 +16,9 @@ using batch::LegData;
 using batch::LegKind;
 using batch::PlaneData;
 
-constexpr double kSlack = 1e-9;         // [m, rad] a pose on its limit is allowed
+constexpr double kLimitSlack = 1e-9;    // [m, rad] a pose on its limit is allowed
 constexpr double kDisagreement = 1e-6;  // of the rod length, between rods of one carriage
-constexpr double kSame = 1e-12;         // [m] rods that ask their carriage the same
+constexpr double kSameRod = 1e-12;      // [m] rods that ask their carriage the same
 
 void put(double (&to)[3], const Vector3& v) { std::copy_n(v.data(), 3, to); }
 Vector3 vector_of(const double* v) { return {v[0], v[1], v[2]}; }
@@ -50,7 +50,7 @@ void drop_repeats(KernelModel& model, const Stays& stays) {
         [&](const LegData& other) { return other.primary && other.drive == leg.drive; });
     const Vector3 difference = vector_of(leg.arm) - vector_of(first.arm);
     const Vector3 whole = vector_of(leg.shift) - vector_of(first.shift);
-    return leg.kind == first.kind && std::abs(leg.length - first.length) < kSame &&
+    return leg.kind == first.kind && std::abs(leg.length - first.length) < kSameRod &&
            stays(difference, whole);
   };
   std::vector<LegData> kept;
@@ -88,9 +88,9 @@ BatchModel::BatchModel(const Machine& machine, const std::vector<std::string>& i
   const Vector3 turns(all_.free[3], all_.free[4], all_.free[5]);
   drop_repeats(turning_, [&](const Vector3& arm, const Vector3& shift) {
     const bool stays = turns.sum() == 0   ? true
-                       : turns.sum() == 1 ? arm.cross(turns).norm() < kSame
-                                          : arm.norm() < kSame;
-    return stays && (arm + shift).norm() < kSame;
+                       : turns.sum() == 1 ? arm.cross(turns).norm() < kSameRod
+                                          : arm.norm() < kSameRod;
+    return stays && (arm + shift).norm() < kSameRod;
   });
 }
 
@@ -108,8 +108,8 @@ void BatchModel::add_leg(const Machine& machine, const Leg& leg, bool primary,
   data.primary = primary;
   data.length = leg.length;
   data.side = leg.side;
-  data.min = leg.stroke.min - kSlack;
-  data.max = leg.stroke.max + kSlack;
+  data.min = leg.stroke.min - kLimitSlack;
+  data.max = leg.stroke.max + kLimitSlack;
   data.tolerance = kDisagreement * leg.length;
   put(data.direction, leg.direction);
   put(data.arm, leg.platform_point - mechanism.tool);
@@ -148,7 +148,7 @@ void BatchModel::add_cone(const Machine& machine, const Leg& leg, int joint, boo
             : leg.kind == Leg::Kind::crank_rod ? ConeData::On::crank
                                                : ConeData::On::base;
   put(cone.axis, along ? data.cone_axis : Vector3(-data.cone_axis));
-  cone.cosine = std::cos(std::min(M_PI, *data.cone + kSlack));
+  cone.cosine = std::cos(std::min(M_PI, *data.cone + kLimitSlack));
   cone.limit = add_name("cone " + data.name);
   all_.cones.push_back(cone);
 }
@@ -162,7 +162,7 @@ void BatchModel::add_limit(const Machine& machine, const HalfSpaceLimit& limit,
   for (const HalfSpaceLimit::Plane& plane : limit.planes) {
     PlaneData data;
     data.limit = name;
-    data.offset = plane.offset + kSlack;
+    data.offset = plane.offset + kLimitSlack;
     data.first_arm = data.last_arm = static_cast<int>(all_.arms.size()) / 3;
     if (limit.body == mechanism.platform) {
       put(data.normal, plane.normal);
@@ -189,7 +189,7 @@ void BatchModel::add_limit(const Machine& machine, const HalfSpaceLimit& limit,
 bool BatchModel::commands(const Eigen::Quaterniond& rotation) const {
   const auto asked = coordinates_of({Vector3::Zero(), rotation.normalized()});
   for (int axis = 3; axis < 6; ++axis)
-    if (!(std::abs(asked[axis]) <= kSlack) && !all_.free[axis]) return false;
+    if (!(std::abs(asked[axis]) <= kLimitSlack) && !all_.free[axis]) return false;
   return true;
 }
 
@@ -206,7 +206,7 @@ KernelModel BatchModel::turned(const Eigen::Quaterniond& rotation) const {
     }
   }
   // The shift holds all of a rod's offset by now.
-  drop_repeats(model, [](const Vector3&, const Vector3& shift) { return shift.norm() < kSame; });
+  drop_repeats(model, [](const Vector3&, const Vector3& shift) { return shift.norm() < kSameRod; });
   for (PlaneData& plane : model.planes) {
     double farthest = -std::numeric_limits<double>::infinity();
     for (int i = plane.first_arm; i < plane.last_arm; ++i)

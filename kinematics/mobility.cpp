@@ -13,14 +13,15 @@ namespace polyglide {
 namespace {
 
 constexpr double kDoubtfulGap = 1e3;  // contract: a smaller gap is said in the reasons
-constexpr double kDrawn = 1e-11;  // closure or rank noise above it comes from rounded coordinates
-constexpr double kMoved = 0.02;   // of a step: a platform that went less far has not moved
-constexpr double kNearSingular = 0.03;  // of the best conditioned posture's smallest singular value
-constexpr double kStep = 0.25;          // of a walk [rad, or length/size of the fastest joint]
-constexpr double kClosed = 1e-10;       // loop error at a posture reached by exact data, and
-constexpr double kLoose = 100;          // how much more than a drawing's noise it may be
-constexpr int kFarther = 3;             // steps made on when the drives seem not to hold
-constexpr double kStray = 1e-5;         // [rad, or length/size] of a coordinate said to stay zero
+constexpr double kDrawnNoise =
+    1e-11;                          // closure or rank noise above it comes from rounded coordinates
+constexpr double kMoved = 0.02;     // of a step: a platform that went less far has not moved
+constexpr double kWavering = 0.03;  // of the best conditioned posture's smallest singular value
+constexpr double kStep = 0.25;      // of a walk [rad, or length/size of the fastest joint]
+constexpr double kExact = 1e-10;    // loop error at a posture reached by exact data, and
+constexpr double kLoose = 100;      // how much more than a drawing's noise it may be
+constexpr int kFarther = 3;         // steps made on when the drives seem not to hold
+constexpr double kStray = 1e-5;     // [rad, or length/size] of a coordinate said to stay zero
 
 /// What was measured on one motion branch.
 struct Measured {
@@ -50,7 +51,7 @@ class Analysis {
   void note(const Freedoms& freedoms);
   void describe_task();
   [[nodiscard]] WalkOptions walk_options(int walks, int steps) const {
-    return {walks, steps, kStep, std::max(kClosed, kLoose * report_.noise), options_.leaps};
+    return {walks, steps, kStep, std::max(kExact, kLoose * report_.noise), options_.leaps};
   }
 
   const Model& model_;
@@ -115,7 +116,7 @@ Measured Analysis::measure(const Branch& branch) {
   double best = 0;
   for (const Place& place : branch.far) best = std::max(best, place.free.rank.smallest);
   for (const auto& [posture, there] : branch.far) {
-    if (there.rank.smallest < kNearSingular * best) continue;  // counts waver there
+    if (there.rank.smallest < kWavering * best) continue;  // counts waver there
     Freedoms free = there;
     if (branch.excess > 0) {
       free.kernel = branch.near_kernel * branch.span;
@@ -272,7 +273,7 @@ void Analysis::decide() {
         fmt::format("{} constraint(s) are redundant: the machine moves only as far as its axes are "
                     "exactly parallel or intersecting as drawn.",
                     report_.redundant_constraints));
-  if (std::max(report_.noise, report_.residual) > kDrawn)
+  if (std::max(report_.noise, report_.residual) > kDrawnNoise)
     reasons.push_back(
         fmt::format("The drawing holds to about {:.0e} of the machine's size: what agrees to that "
                     "precision was "

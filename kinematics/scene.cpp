@@ -14,17 +14,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Tenths of a micrometre are plenty for a drawing and keep files small.
-double tidy(double value) {
+double drawn(double value) {
   const double rounded = std::round(value * 1e7) / 1e7;
   return rounded == 0 ? 0 : rounded;
 }
 
-Json json_of(const Vector3& v) { return {tidy(v.x()), tidy(v.y()), tidy(v.z())}; }
+Json drawn_point(const Vector3& v) { return {drawn(v.x()), drawn(v.y()), drawn(v.z())}; }
 
 void append_pose(Json& list, const Transform& body) {
   const Eigen::Quaterniond q(body.linear());
-  for (double value : {q.w(), q.x(), q.y(), q.z()}) list.push_back(tidy(value));
-  for (int i = 0; i < 3; ++i) list.push_back(tidy(body.translation()[i]));
+  for (double value : {q.w(), q.x(), q.y(), q.z()}) list.push_back(drawn(value));
+  for (int i = 0; i < 3; ++i) list.push_back(drawn(body.translation()[i]));
 }
 
 const char* type_name(JointType type) {
@@ -77,7 +77,7 @@ class SceneWriter {
     draw();
     scene["segments"] = segments_;
     scene["joints"] = joints();
-    scene["tool"] = json_of(mechanism_.tool);
+    scene["tool"] = drawn_point(mechanism_.tool);
     scene["platform"] = shown_[mechanism_.platform];
     add_table(scene);
     return scene;
@@ -118,7 +118,7 @@ class SceneWriter {
       const Joint& joint = mechanism_.joints[guide];
       const Vector3 axis =
           joint.bodies[0] == mechanism_.base ? joint.axes[0] : Vector3(-joint.axes[0]);
-      show(b, {{"drive", drive_of(guide)}, {"direction", json_of(axis)}});
+      show(b, {{"drive", drive_of(guide)}, {"direction", drawn_point(axis)}});
     }
     if (mechanism_.platform != mechanism_.base) show(mechanism_.platform, "table");
     // What is left is a rod or a telescope between shown bodies, or must be shown itself.
@@ -133,8 +133,8 @@ class SceneWriter {
     if ((a - b).norm() < 1e-7) return;
     segments_.push_back({{"role", role},
                          {"name", name},
-                         {"from", {{"body", from}, {"at", json_of(a)}}},
-                         {"to", {{"body", to}, {"at", json_of(b)}}}});
+                         {"from", {{"body", from}, {"at", drawn_point(a)}}},
+                         {"to", {{"body", to}, {"at", drawn_point(b)}}}});
   }
 
   bool draw_rod(int body) {
@@ -255,12 +255,12 @@ class SceneWriter {
       if (holder < 0) continue;
       Json axes = Json::array();
       if (joint.type != JointType::spherical && joint.type != JointType::weld)
-        axes.push_back(json_of(joint.axes[0]));
-      if (joint.type == JointType::universal) axes.push_back(json_of(joint.axes[1]));
+        axes.push_back(drawn_point(joint.axes[0]));
+      if (joint.type == JointType::universal) axes.push_back(drawn_point(joint.axes[1]));
       list.push_back({{"name", joint.name},
                       {"type", type_name(joint.type)},
                       {"body", holder},
-                      {"at", json_of(joint.at)},
+                      {"at", drawn_point(joint.at)},
                       {"axes", std::move(axes)},
                       {"driven", !joint.driven.empty()}});
     }
@@ -273,13 +273,13 @@ class SceneWriter {
     for (std::size_t d = 0; d < model_.drives.size(); ++d) {
       const Freedom& freedom = model_.freedoms[model_.drives[d]];
       Json samples = Json::array();
-      for (double sample : table.samples[d]) samples.push_back(tidy(sample));
+      for (double sample : table.samples[d]) samples.push_back(drawn(sample));
       scene["drives"].push_back({{"name", mechanism_.joints[freedom.joint].name},
                                  {"kind", freedom.translational ? "prismatic" : "revolute"},
                                  {"unit", freedom.translational ? "m" : "rad"},
                                  {"samples", std::move(samples)},
-                                 {"min", tidy(table.ranges[d].min)},
-                                 {"max", tidy(table.ranges[d].max)}});
+                                 {"min", drawn(table.ranges[d].min)},
+                                 {"max", drawn(table.ranges[d].max)}});
     }
     scene["poses"] = Json::array();
     for (const auto& bodies : table.bodies) {

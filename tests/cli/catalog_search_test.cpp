@@ -22,10 +22,6 @@ std::set<std::string> found(std::vector<std::string> words) {
   return names;
 }
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST(CatalogSearch, FindsMachinesByPattern) {
   const auto names = found({"--motion", "3T1R"});
   for (const char* name : {"table1-1", "table1-6", "h4", "par4", "quadrupteron"})

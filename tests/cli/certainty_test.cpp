@@ -10,10 +10,6 @@ namespace {
 
 using nlohmann::json;
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST(Certainty, AllAssemblyModesCarryCertificatesAndACompletenessEstimate) {
   const ProgramResult dut =
       run_polyglide({"pose", "hexapod-6ups", "--fk", "5,0,-5,10,20,0", "--all", "--json"});

@@ -13,10 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 /// Wrong input must end with status 1, say so on stderr and print no result.
 void expect_refused(const ProgramResult& result, const std::string& message) {
   EXPECT_EQ(result.status, 1) << result.err;

@@ -3,26 +3,20 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "catalog/catalog.hpp"
+#include "cases.hpp"
 #include "catalog/json_file.hpp"
-#include "kinematics/mobility.hpp"
 
 namespace polyglide {
 namespace {
+
+using namespace polyglide::fixtures;
 
 const nlohmann::json& published() {
   static const nlohmann::json kRecords =
       read_json(std::string(POLYGLIDE_SOURCE_DIR) + "/tests/truth/catalog.json");
   return kRecords;
-}
-
-std::string test_name(const testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
 }
 
 class CatalogOfRecord : public testing::TestWithParam<std::string> {};

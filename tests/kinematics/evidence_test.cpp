@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "catalog/catalog.hpp"
+#include "cases.hpp"
 #include "catalog/json_file.hpp"
 #include "kinematics/manifold.hpp"
 #include "kinematics/screw_words.hpp"
@@ -12,9 +12,7 @@
 namespace polyglide {
 namespace {
 
-MobilityReport check(const std::string& name) {
-  return analyse_mobility(compile(expand(find_layout(name))));
-}
+using namespace polyglide::fixtures;
 
 int couples(const std::vector<Screw>& wrenches) {
   return static_cast<int>(std::ranges::count_if(

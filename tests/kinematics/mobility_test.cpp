@@ -2,14 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "catalog/catalog.hpp"
+#include "cases.hpp"
 #include "catalog/json_file.hpp"
 
 namespace polyglide {
 namespace {
 
-MobilityReport check(const Mechanism& mechanism) { return analyse_mobility(compile(mechanism)); }
-MobilityReport check(const std::string& name) { return check(expand(find_layout(name))); }
+using namespace polyglide::fixtures;
 
 /// The layout with the joint word of both ends of one limb's rods replaced.
 Mechanism with_end(const std::string& name, int limb, const char* end,

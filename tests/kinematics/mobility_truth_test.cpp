@@ -4,19 +4,17 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cases.hpp"
 #include "catalog/json_file.hpp"
-#include "catalog/layout.hpp"
-#include "kinematics/mobility.hpp"
 
 namespace polyglide {
 namespace {
 
-const std::filesystem::path kTruth = std::filesystem::path(POLYGLIDE_SOURCE_DIR) / "tests/truth";
+using namespace polyglide::fixtures;
 
-nlohmann::json check(const std::string& set, const std::string& name) {
+nlohmann::json checked(const std::string& set, const std::string& name) {
   const Mechanism mechanism = expand(load_layout(kTruth / set / "mechanisms" / (name + ".json")));
   return to_json(analyse_mobility(compile(mechanism)), mechanism);
 }
@@ -28,19 +26,11 @@ std::vector<std::string> cases(const std::string& set) {
   return names;
 }
 
-std::string test_name(const testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); },
-      '_');
-  return "case_" + name;
-}
-
 class PublishedMechanism : public testing::TestWithParam<std::string> {};
 
 TEST_P(PublishedMechanism, HasTheExpectedCountsAndVerdict) {
   const nlohmann::json expected = read_json(kTruth / "mobility/expected.json")[GetParam()];
-  const nlohmann::json found = check("mobility", GetParam());
+  const nlohmann::json found = checked("mobility", GetParam());
   EXPECT_EQ(found["verdict"], expected["verdict"]) << found["reasons"];
   for (const char* group : {"mobility", "platform", "drives"}) {
     const nlohmann::json fields = expected.value(group, nlohmann::json::object());
@@ -56,7 +46,7 @@ class DatabaseMachine : public testing::TestWithParam<std::string> {};
 
 TEST_P(DatabaseMachine, HasTheExpectedFreedomsWithDrivesFreeAndHeld) {
   const nlohmann::json expected = read_json(kTruth / "parroblib/expected.json")[GetParam()];
-  const nlohmann::json found = check("parroblib", GetParam());
+  const nlohmann::json found = checked("parroblib", GetParam());
   EXPECT_EQ(found["platform"]["dof"], expected["expected_platform_dof"]);
   EXPECT_EQ(found["platform"]["translations"], expected["expected_translations"]);
   EXPECT_EQ(found["platform"]["rotations"], expected["expected_rotations"]);

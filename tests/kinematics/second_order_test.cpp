@@ -4,13 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include "cases.hpp"
 #include "kinematics/branches.hpp"
 #include "kinematics/manifold.hpp"
-#include "kinematics/mobility.hpp"
 #include "machines.hpp"
 
 namespace polyglide {
 namespace {
+
+using namespace polyglide::fixtures;
 
 /// A planar linkage of revolutes about z; bodies are numbered, 0 is the base.
 class Planar {
@@ -114,8 +116,6 @@ TEST(SecondOrder, OfAnImmobileMechanismIsEmpty) {
   EXPECT_EQ(found.obstructions, 0);
   EXPECT_TRUE(found.components.empty());
 }
-
-MobilityReport check(const Mechanism& mechanism) { return analyse_mobility(compile(mechanism)); }
 
 TEST(Branches, ShakyIsRigid) {
   const MobilityReport report = check(three_hinges_in_line());

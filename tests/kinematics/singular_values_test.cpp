@@ -18,9 +18,9 @@ std::pair<double, double> by_svd(const Eigen::MatrixXd& j) {
 }
 
 template <int N>
-simd::Extremes<double> from_gram(const Eigen::Matrix<double, N, N>& j) {
+simd::Extremes<double> from_gram(const Eigen::MatrixXd& j) {
   double gram[N][N];
-  const Eigen::Matrix<double, N, N> product = j.transpose() * j;
+  const Eigen::MatrixXd product = j.transpose() * j;
   for (int r = 0; r < N; ++r)
     for (int c = 0; c < N; ++c) gram[r][c] = product(r, c);
   const double det = j.determinant();
@@ -30,7 +30,7 @@ simd::Extremes<double> from_gram(const Eigen::Matrix<double, N, N>& j) {
 }
 
 template <int N>
-simd::Extremes<double> by_rotations(const Eigen::Matrix<double, N, N>& j) {
+simd::Extremes<double> by_rotations(const Eigen::MatrixXd& j) {
   double columns[N][N];
   for (int r = 0; r < N; ++r)
     for (int c = 0; c < N; ++c) columns[c][r] = j(r, c);
@@ -38,19 +38,19 @@ simd::Extremes<double> by_rotations(const Eigen::Matrix<double, N, N>& j) {
   return {found.least, found.greatest, false};
 }
 
-template <int N>
-Eigen::Matrix<double, N, N> turned(const Eigen::Matrix<double, N, 1>& singular, Uniform& random) {
-  Eigen::Matrix<double, N, N> a, b;
-  for (int r = 0; r < N; ++r)
-    for (int c = 0; c < N; ++c) a(r, c) = random(), b(r, c) = random();
-  const Eigen::Matrix<double, N, N> q = a.householderQr().householderQ();
-  const Eigen::Matrix<double, N, N> p = b.householderQr().householderQ();
+Eigen::MatrixXd turned(const Eigen::VectorXd& singular, Uniform& random) {
+  const Eigen::Index n = singular.size();
+  Eigen::MatrixXd a(n, n), b(n, n);
+  for (int r = 0; r < n; ++r)
+    for (int c = 0; c < n; ++c) a(r, c) = random(), b(r, c) = random();
+  const Eigen::MatrixXd q = a.householderQr().householderQ();
+  const Eigen::MatrixXd p = b.householderQr().householderQ();
   return q * singular.asDiagonal() * p;
 }
 
 /// The kernel's answer: the fast one, or the careful one where that is doubtful.
 template <int N>
-simd::Extremes<double> answer(const Eigen::Matrix<double, N, N>& j) {
+simd::Extremes<double> answer(const Eigen::MatrixXd& j) {
   const auto fast = from_gram<N>(j);
   return fast.doubtful ? by_rotations<N>(j) : fast;
 }
@@ -60,7 +60,7 @@ void compare_random(double decades) {
   Uniform random;
   int doubtful = 0;
   for (int i = 0; i < 1000; ++i) {
-    Eigen::Matrix<double, N, N> j;
+    Eigen::MatrixXd j(N, N);
     for (int k = 0; k < N; ++k) {
       for (int r = 0; r < N; ++r) j(r, k) = random();
       j.col(k) *= std::pow(10, decades * random());
@@ -92,15 +92,14 @@ TEST(SingularValues, AgreeWithTheDecompositionOfRandomMatrices) {
 template <int N>
 void compare_repeated() {
   Uniform random;
-  using Values = Eigen::Matrix<double, N, 1>;
   for (double share : {0.0, 1e-12, 1e-9, 1e-7, 1e-5, 1e-3})
     for (int equal = 2; equal <= N; ++equal)
       for (bool low : {true, false}) {
-        Values values;
+        Eigen::VectorXd values(N);
         for (int k = 0; k < N; ++k) values[k] = 1 + 0.7 * k;
         for (int k = 0; k < equal; ++k)
           values[low ? k : N - 1 - k] = (low ? 1 : 1 + 0.7 * (N - 1)) * (1 + share * k);
-        const Eigen::Matrix<double, N, N> j = turned<N>(values, random);
+        const Eigen::MatrixXd j = turned(values, random);
         const auto found = answer<N>(j);
         EXPECT_NEAR(std::sqrt(found.least), values.minCoeff(), 1e-11) << N << ' ' << equal;
         EXPECT_NEAR(std::sqrt(found.greatest), values.maxCoeff(), 1e-11) << N << ' ' << equal;
@@ -117,20 +116,20 @@ TEST(SingularValues, RepeatedAndNearlyRepeatedOnesKeepTheirDigits) {
 
 template <int N>
 void check_special() {
-  using Matrix = Eigen::Matrix<double, N, N>;
+  using Matrix = Eigen::MatrixXd;
   for (const double scale : {1.0, 1e3, 1e-6}) {
-    const Matrix identity = scale * Matrix::Identity();
+    const Matrix identity = scale * Matrix::Identity(N, N);
     EXPECT_NEAR(std::sqrt(answer<N>(identity).least), scale, 1e-15 * scale) << N;
     EXPECT_NEAR(std::sqrt(answer<N>(identity).greatest), scale, 1e-15 * scale) << N;
   }
-  Matrix flat = Matrix::Identity();
+  Matrix flat = Matrix::Identity(N, N);
   flat(N - 1, N - 1) = 0;
   EXPECT_EQ(answer<N>(flat).least, 0) << N;
   EXPECT_NEAR(answer<N>(flat).greatest, 1, 1e-15) << N;
-  const Matrix one = Matrix::Ones();
+  const Matrix one = Matrix::Ones(N, N);
   EXPECT_NEAR(answer<N>(one).greatest, N * N, 1e-12) << N;
   EXPECT_NEAR(answer<N>(one).least, 0, 1e-28) << N;
-  EXPECT_EQ(answer<N>(Matrix::Zero()).greatest, 0) << N;
+  EXPECT_EQ(answer<N>(Matrix::Zero(N, N)).greatest, 0) << N;
 }
 
 TEST(SingularValues, MultiplesOfTheIdentityAndSingularMatricesAreRight) {
@@ -144,9 +143,9 @@ TEST(SingularValues, MultiplesOfTheIdentityAndSingularMatricesAreRight) {
 TEST(SingularValues, RotationsKeepTheDigitsOfIllConditionedMatrices) {
   Uniform random;
   for (double least : {9e-4, 1e-6, 1e-9}) {
-    Eigen::Matrix<double, 6, 1> values;
+    Eigen::VectorXd values(6);
     values << 1, 2, 2, 3, 1, least;
-    const Eigen::Matrix<double, 6, 6> j = turned<6>(values, random);
+    const Eigen::MatrixXd j = turned(values, random);
     EXPECT_NEAR(std::sqrt(answer<6>(j).least), least, 1e-14) << least;
   }
 }
@@ -154,11 +153,10 @@ TEST(SingularValues, RotationsKeepTheDigitsOfIllConditionedMatrices) {
 TEST(SingularValues, FactorsSolveAndInvert) {
   Uniform random;
   for (int i = 0; i < 100; ++i) {
-    Eigen::Matrix<double, 5, 5> a;
+    Eigen::MatrixXd a(5, 5);
     for (int r = 0; r < 5; ++r)
       for (int c = 0; c < 5; ++c) a(r, c) = random();
-    const Eigen::Matrix<double, 5, 5> g =
-        a.transpose() * a + Eigen::Matrix<double, 5, 5>::Identity();
+    const Eigen::MatrixXd g = a.transpose() * a + Eigen::MatrixXd::Identity(5, 5);
     double factors[5][5], x[5], m[5][5];
     for (int r = 0; r < 5; ++r) {
       x[r] = r + 1;
@@ -166,8 +164,8 @@ TEST(SingularValues, FactorsSolveAndInvert) {
     }
     EXPECT_TRUE((simd::factorise<double, 5>(factors)));
     simd::solve_factorised<double, 5>(factors, x);
-    const Eigen::Matrix<double, 5, 1> right{1, 2, 3, 4, 5};
-    EXPECT_LT((g * Eigen::Map<Eigen::Matrix<double, 5, 1>>(x) - right).norm(), 1e-12);
+    const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(5, 1, 5);
+    EXPECT_LT((g * Eigen::Map<Eigen::VectorXd>(x, 5) - right).norm(), 1e-12);
     EXPECT_NEAR((simd::trace_of_inverse<double, 5>(factors)), g.inverse().trace(), 1e-12);
     EXPECT_NEAR((simd::determinant<double, 5>(m)), a.determinant(), 1e-13);
   }

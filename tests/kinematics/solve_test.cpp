@@ -5,11 +5,12 @@
 #include <cmath>
 #include <random>
 
-#include "catalog/catalog.hpp"
-#include "kinematics/mobility.hpp"
+#include "cases.hpp"
 
 namespace polyglide {
 namespace {
+
+using namespace polyglide::fixtures;
 
 double uniform(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
@@ -43,12 +44,6 @@ std::vector<std::string> determinate_entries() {
             .verdict == Verdict::determinate)
       names.push_back(name);
   return names;
-}
-
-std::string test_name(const testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
 }
 
 class CatalogMachine : public testing::TestWithParam<std::string> {

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
-#include "catalog/catalog.hpp"
+#include "cases.hpp"
 #include "catalog/json_file.hpp"
 #include "kinematics/branches.hpp"
 #include "kinematics/motion.hpp"
@@ -14,7 +12,7 @@
 namespace polyglide {
 namespace {
 
-const std::filesystem::path kTruth = std::filesystem::path(POLYGLIDE_SOURCE_DIR) / "tests/truth";
+using namespace polyglide::fixtures;
 
 /// "name" of the catalog, or "set/name" of a truth case.
 Mechanism machine(const std::string& name) {
@@ -33,14 +31,7 @@ std::vector<std::string> machines() {
   return names;
 }
 
-std::string test_name(const testing::TestParamInfo<std::string>& info) {
-  std::string name = info.param;
-  std::ranges::replace_if(
-      name, [](unsigned char c) { return !std::isalnum(c); }, '_');
-  return name;
-}
-
-MobilityReport check(const Mechanism& mechanism, std::uint64_t seed = 1) {
+MobilityReport briefly_checked(const Mechanism& mechanism, std::uint64_t seed = 1) {
   return analyse_mobility(compile(mechanism), {.seed = seed, .walks = 2, .evidence = false});
 }
 
@@ -69,12 +60,12 @@ void expect_same_verdict(const MobilityReport& a, const MobilityReport& b) {
 class VerdictOf : public testing::TestWithParam<std::string> {
  protected:
   Mechanism mechanism_ = machine(GetParam());
-  MobilityReport reference_ = check(mechanism_);
+  MobilityReport reference_ = briefly_checked(mechanism_);
 };
 
 TEST_P(VerdictOf, DoesNotDependOnTheSeed) {
   for (std::uint64_t seed = 2; seed < 6; ++seed)
-    expect_same_verdict(reference_, check(mechanism_, seed));
+    expect_same_verdict(reference_, briefly_checked(mechanism_, seed));
 }
 
 TEST_P(VerdictOf, DoesNotDependOnUnitFrameOrderOrWhichBodyOfAJointComesFirst) {
@@ -82,7 +73,7 @@ TEST_P(VerdictOf, DoesNotDependOnUnitFrameOrderOrWhichBodyOfAJointComesFirst) {
   for (const double scale : {1e-3, 0.0254, 1.0, 1e3}) {
     SCOPED_TRACE(testing::Message() << "scale " << scale);
     const Mechanism other = variations::swapped(variations::renumbered(mechanism_, random), random);
-    expect_same_verdict(reference_, check(variations::moved(
+    expect_same_verdict(reference_, briefly_checked(variations::moved(
                                         other, variations::random_frame(random, scale), scale)));
   }
 }
@@ -93,7 +84,7 @@ TEST_P(VerdictOf, HoldsAtDrawingPrecision) {
     SCOPED_TRACE(testing::Message() << "drawing " << i);
     const Mechanism turned =
         variations::moved(mechanism_, variations::random_frame(random, i % 2), 1000);
-    expect_same_verdict(reference_, check(variations::drawn(turned, 9)));
+    expect_same_verdict(reference_, briefly_checked(variations::drawn(turned, 9)));
   }
 }
 
@@ -105,7 +96,7 @@ TEST_P(VerdictOf, HoldsFromAnotherPostureOfTheBranch) {
   const Departure departure = leave(model, start, free.kernel, false, {2, 2, 0.2}, random);
   if (departure.branches.size() != 1) GTEST_SKIP() << "home is a meeting of branches, or rigid";
   for (const auto& [posture, there] : departure.branches.front().far) {
-    const MobilityReport report = check(variations::taken_at(model, posture));
+    const MobilityReport report = briefly_checked(variations::taken_at(model, posture));
     expect_same_motion(reference_, report);
     const bool regular =
         departure.smooth && reference_.home_locked_platform == reference_.locked_platform;

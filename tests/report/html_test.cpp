@@ -6,12 +6,13 @@
 #include <filesystem>
 #include <string>
 
-#include "catalog/json_file.hpp"
+#include "sample.hpp"
 
 namespace polyglide {
 namespace {
 
 namespace fs = std::filesystem;
+using fixtures::sample;
 
 const WebBundle kTinyBundle{"draw();", "p { color: black }"};
 
@@ -20,10 +21,6 @@ std::string island_of(const std::string& html) {
   const std::string open = R"(<script type="application/json" id="run">)";
   const std::size_t from = html.find(open) + open.size();
   return html.substr(from, html.find("</script>", from) - from);
-}
-
-nlohmann::json sample() {
-  return read_json(fs::path(POLYGLIDE_SOURCE_DIR) / "tests/report/sample_run.json");
 }
 
 TEST(Html, TextOfTheRunCannotEndTheIslandOrOpenAComment) {

@@ -11,6 +11,7 @@
 
 #include "catalog/json_file.hpp"
 #include "report/html.hpp"
+#include "sample.hpp"
 
 namespace polyglide {
 namespace {
@@ -40,10 +41,6 @@ class Page : public testing::Test {
   }
   void TearDown() override {
     if (!folder_.empty()) fs::remove_all(folder_);
-  }
-
-  static nlohmann::json sample() {
-    return read_json(fs::path(POLYGLIDE_SOURCE_DIR) / "tests/report/sample_run.json");
   }
 
   /// Writes the report of a run and opens it; `fragment` follows the '#', `script`

@@ -3,16 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
-#include "catalog/json_file.hpp"
+#include "sample.hpp"
 
 namespace polyglide {
 namespace {
 
-nlohmann::json sample() {
-  return read_json(std::filesystem::path(POLYGLIDE_SOURCE_DIR) / "tests/report/sample_run.json");
-}
+using fixtures::sample;
 
 TEST(Summary, ShowsTheRankingInTheUnitsPeopleSee) {
   const nlohmann::json run = nlohmann::json::parse(R"({

@@ -22,6 +22,11 @@ struct ProgramResult {
 [[nodiscard]] ProgramResult run_polyglide(const std::vector<std::string>& words,
                                           const std::string& out = "");
 
+/// Whether a text has `part` in it.
+[[nodiscard]] inline bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 /// A new empty folder under the system's temporary folder; removed when this goes.
 class TemporaryFolder {
  public:
