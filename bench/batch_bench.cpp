@@ -34,7 +34,8 @@ double count_operations(const Case& item) {
   batch::KernelInput in{poses.x.data(), poses.y.data(), poses.z.data(), {}, {}};
   for (int k = 0; k < 3; ++k)
     in.angle[k] = poses.angles[k].empty() ? nullptr : poses.angles[k].data();
-  std::vector<double> limit(kCount), index(kCount);
+  std::vector<int> limit(kCount);
+  std::vector<double> index(kCount);
   batch::KernelOutput out;
   out.limit = limit.data();
   if (item.wanted & Wanted::condition) out.condition = index.data();
