@@ -11,7 +11,8 @@ namespace polyglide::batch {
 namespace detail {
 
 template <class V, int N, bool kTurning, class Legs>
-[[gnu::flatten]] void run_legs(const KernelModel& model, const KernelInput& in, const KernelOutput& out, int count) {
+[[gnu::flatten]] void run_legs(const KernelModel& model, const KernelInput& in,
+                               const KernelOutput& out, int count) {
   for (int i = 0; i < count; i += Lanes<V>::count) {
     Pack<V, Legs> pack;
     solve<V, kTurning>(model, in, i, pack);

@@ -105,8 +105,7 @@ inline V frobenius_of(const KernelModel& model, const Pack<V, Legs>& pack, const
   }
   const auto definite = simd::factorise<V, N>(factors);
   const V inverse = V(double(N)) / sqrt(trace * simd::trace_of_inverse<V, N>(factors));
-  const auto doubtful =
-      MaskOf<V>(good & !MaskOf<V>(definite & (inverse >= V(1e-3))));
+  const auto doubtful = MaskOf<V>(good & !MaskOf<V>(definite & (inverse >= V(1e-3))));
   if (!any(doubtful)) [[likely]]
     return inverse;
   const simd::Spectrum<V> careful = careful_spectrum<V, N>(model, pack);
@@ -189,8 +188,8 @@ template <class V, int N, class Legs>
 inline void store_columns(const KernelModel& model, const Pack<V, Legs>& pack,
                           const KernelOutput& out, int i) {
   if (out.drives)
-    for_drives<Legs>(model,
-                     [&](int d) { Lanes<V>::store(out.drives + d * out.stride + i, pack.place[d]); });
+    for_drives<Legs>(
+        model, [&](int d) { Lanes<V>::store(out.drives + d * out.stride + i, pack.place[d]); });
   if (out.jacobian)
     for_drives<Legs>(model, [&](int d) {
 #pragma GCC unroll 8

@@ -291,8 +291,7 @@ inline void solve(const KernelModel& model, const KernelInput& in, int i, Pack<V
                                      : rotation_of<V>(in.angle, i);
   check_motion<V, kTurning>(model, pack);
   if constexpr (Legs::kAlike)
-    for_drives<Legs>(model,
-                     [&](int d) { solve_leg<V, kTurning>(model, model.legs[d], d, pack); });
+    for_drives<Legs>(model, [&](int d) { solve_leg<V, kTurning>(model, model.legs[d], d, pack); });
   else
     for (const LegData& leg : model.legs) solve_leg<V, kTurning>(model, leg, leg.drive, pack);
   for (const PlaneData& plane : model.planes) check_plane<V, kTurning>(model, plane, pack);

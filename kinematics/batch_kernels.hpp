@@ -23,8 +23,8 @@ struct LegData {
   double arm[3] = {}, shift[3] = {};
   double direction[3] = {};                ///< guide
   double outward[3] = {}, onward[3] = {};  ///< crank: unit vectors centre → rod at home, and ahead
-  double length = 0, side = 1, radius = 1;  ///< rod (strut at home), root, crank arm
-  double min = 0, max = 0, tolerance = 0;   ///< of the drive, and between rods of a carriage
+  double length = 0, side = 1, radius = 1;         ///< rod (strut at home), root, crank arm
+  double min = 0, max = 0, tolerance = 0;          ///< of the drive, and between rods of a carriage
   double reach = 0, min_limit = 0, max_limit = 0;  ///< indices of limits, as all `limit`s
   int first_cone = 0, last_cone = 0;
 };
@@ -85,10 +85,11 @@ struct ForwardColumns {
   double* residual = nullptr;
 };
 
-/// What an instruction set offers. `count` is a multiple of `lanes`, at most kBlock.
+/// What an instruction set offers. `count` is a multiple of `lanes` or `forward_lanes`, at
+/// most kBlock.
 struct Kernel {
   const char* name;
-  int lanes;
+  int lanes, forward_lanes;
   void (*evaluate)(const KernelModel&, const KernelInput&, const KernelOutput&, int count);
   void (*forward)(const KernelModel&, const ForwardColumns&, int count);
 };

@@ -366,7 +366,7 @@ void Evaluator::forward(const DriveBatch& drives, ForwardResult& result) const {
 
 void Evaluator::forward_legs(const DriveBatch& drives, ForwardResult& result) const {
   const batch::Kernel& kernel = batch::kernel_named(drives.instructions);
-  const auto lanes = static_cast<std::size_t>(kernel.lanes);
+  const auto lanes = static_cast<std::size_t>(kernel.forward_lanes);
   const std::size_t rows = machine_.model.drives.size();
   in_blocks(drives.size, kGrain, [&](std::size_t first, std::size_t last) {
     const std::size_t whole = (last - first) - (last - first) % lanes;
@@ -395,7 +395,7 @@ void Evaluator::forward_legs(const DriveBatch& drives, ForwardResult& result) co
                     pose[2],
                     {pose[3], pose[4], pose[5], pose[6]},
                     pose[7]},
-                   kernel.lanes);
+                   kernel.forward_lanes);
     for (std::size_t k = 0; k < 7; ++k) std::copy_n(pose[k], count, &result.pose[k][begin]);
     std::copy_n(pose[7], count, &result.residual[begin]);
   });

@@ -170,11 +170,9 @@ inline Twice<V> max(const Twice<V>& x, const Twice<V>& y) {
   return {max(x.a, y.a), max(x.b, y.b)};
 }
 
-#ifndef WIDE
-#define WIDE Twice<V>
-#endif
+/// What small kernels compute with: two registers where the processor has enough of them.
 template <class V>
-using WideOf = std::conditional_t<(Lanes<V>::count > 2), WIDE, V>;
+using WideOf = std::conditional_t<(Lanes<V>::count > 2), Twice<V>, V>;
 
 template <class V>
 using MaskOf = decltype(V(0) < V(0));
