@@ -34,7 +34,8 @@ double count_operations(const Case& item) {
   batch::KernelInput in{poses.x.data(), poses.y.data(), poses.z.data(), {}, {}};
   for (int k = 0; k < 3; ++k)
     in.angle[k] = poses.angles[k].empty() ? nullptr : poses.angles[k].data();
-  std::vector<double> limit(kCount), index(kCount);
+  std::vector<int> limit(kCount);
+  std::vector<double> index(kCount);
   batch::KernelOutput out;
   out.limit = limit.data();
   if (item.wanted & Wanted::condition) out.condition = index.data();
@@ -61,6 +62,21 @@ void run(benchmark::State& state, const Case& item, const std::string& instructi
   for (double value : result.inverse_condition) sum += value;
   for (double value : result.frobenius) sum += value;
   state.counters["mean_index"] = sum / static_cast<double>(poses.size());
+}
+
+/// A machine without closed form: Newton's method on loop closure, each pose from the one before.
+void run_general(benchmark::State& state) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  constexpr std::size_t kCount = 160;
+  const Evaluator evaluator(prepare(expand(find_layout("3-rps"))), kIgnored);
+  PoseBatch poses = random_poses(kCount, 0, 0.01, 0.05);
+  poses.angles[2].clear();
+  poses.wanted = Wanted::drives | Wanted::condition;
+  BatchResult result;
+  for (auto _ : state) evaluator.evaluate(poses, result);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kCount));
+  state.counters["reached"] =
+      static_cast<double>(std::count(result.limit.begin(), result.limit.end(), -1));
 }
 
 nlohmann::json machine_json(const Machine& machine) {
@@ -101,5 +117,6 @@ int main(int argc, char** argv) {
       benchmark::RegisterBenchmark((std::string(item.name) + '/' + kernel->name).c_str(), run, item,
                                    std::string(kernel->name), operations);
   }
+  benchmark::RegisterBenchmark("3-rps/condition/general way", run_general);
   benchmark::RunSpecifiedBenchmarks();
 }

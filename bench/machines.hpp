@@ -13,8 +13,8 @@ inline Counted sqrt(Counted a) { return Counted::made(std::sqrt(a.value)); }
 inline Counted abs(Counted a) { return Counted(std::fabs(a.value)); }
 inline Counted nearbyint(Counted a) { return Counted::made(std::nearbyint(a.value)); }
 inline Counted atan2(Counted y, Counted x) { return Counted::made(std::atan2(y.value, x.value)); }
-inline Counted min(Counted a, Counted b) { return b < a ? b : a; }
-inline Counted max(Counted a, Counted b) { return a < b ? b : a; }
+inline Counted min(Counted a, Counted b) { return a < b ? a : b; }
+inline Counted max(Counted a, Counted b) { return a > b ? a : b; }
 inline Counted select(bool chosen, Counted a, Counted b) { return chosen ? a : b; }
 
 inline const Machine& delta() {
@@ -62,4 +62,6 @@ struct polyglide::simd::Lanes<polyglide::bench::Counted> {
   static constexpr int count = 1;
   static bench::Counted load(const double* from) { return bench::Counted(*from); }
   static void store(double* to, bench::Counted value) { *to = value.value; }
+  static void store_whole(int* to, bench::Counted value) { *to = static_cast<int>(value.value); }
+  static void store_signs(signed char* to, bench::Counted value) { *to = value.value > 0; }
 };

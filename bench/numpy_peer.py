@@ -12,6 +12,9 @@ import time
 
 import numpy as np
 
+if not np.__file__.startswith("/usr/lib/python3/"):
+    sys.exit(f"numpy_peer.py: Debian's python3-numpy is the peer, not {np.__file__}")
+
 
 def best(call, count, repeats=7):
     seconds = []

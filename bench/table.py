@@ -6,17 +6,34 @@ import sys
 
 
 def rates(folder):
-    found = {}
-    for name in ("batch", "forward", "mobility"):
-        for row in json.load(open(f"{folder}/{name}.json"))["benchmarks"]:
+    """Best rate and operations of every row; peers that are not installed left no file."""
+    found, means = {}, {}
+    for name in ("batch", "forward", "mobility", "kdl"):
+        for row in read(f"{folder}/{name}.json").get("benchmarks", []):
             if row.get("run_type") != "iteration":
                 continue
             best = found.get(row["name"], (0, 0))
             found[row["name"]] = max(best, (row["items_per_second"], row.get("flops", 0)))
-    for name in ("numpy", "numpy_mobility"):
-        for work, row in json.load(open(f"{folder}/{name}.json")).items():
+            means[row["name"]] = row.get("mean_index", 0)
+    for name in ("numpy", "numpy_mobility", "octave"):
+        for work, row in read(f"{folder}/{name}.json").items():
             found[work] = (row["rate"], 0)
+            means[work] = row.get("mean_index", 0)
+    check(means)
     return found
+
+
+def read(path):
+    return json.load(open(path)) if os.path.exists(path) else {}
+
+
+def check(means):
+    """All who did the same work found the same mean index, of 2,000 poses at least."""
+    for name, mean in means.items():
+        same = [other for work, other in means.items()
+                if other and work.rsplit("/", 1)[0] == name.rsplit("/", 1)[0]]
+        if mean and max(same) > 1.01 * min(same):
+            sys.exit(f"{name}: mean index {mean}, others {same}")
 
 
 def processor():
@@ -43,7 +60,8 @@ def table(folder):
         if work == "peak":
             continue
         share = f"{100 * rate * operations / peaks[how]:.0f} %" if how in peaks and operations else ""
-        lines.append(f"| {work} | {how} | {rate / 1e6:.3g} | {operations:.0f} | {share} |"
+        count = f"{operations:.0f}" if operations else ""
+        lines.append(f"| {work} | {how} | {rate / 1e6:.3g} | {count} | {share} |"
                      f" {best[work] / rate:.1f} |")
     return "\n".join(lines)
 

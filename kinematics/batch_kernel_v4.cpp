@@ -5,7 +5,8 @@ namespace polyglide::batch {
 
 const Kernel& v4_kernel() {
   using V = xsimd::batch<double, xsimd::avx512dq>;
-  static const Kernel kernel{"v4", simd::Lanes<V>::count, &evaluate<V>, &forward<V>};
+  static const Kernel kernel{"v4", simd::Lanes<simd::WideOf<V>>::count, simd::Lanes<V>::count,
+                             &evaluate<V>, &forward<V>};
   return kernel;
 }
 

@@ -8,6 +8,7 @@ namespace polyglide::batch {
 
 constexpr int kMostDrives = 24;  ///< a machine with more is evaluated the general way
 constexpr int kBlock = 256;      ///< most poses per call of a kernel
+constexpr int kMostLanes = 16;   ///< of any kernel
 
 enum class LegKind { guide_rod, strut, crank_rod };
 
@@ -22,25 +23,23 @@ struct LegData {
   double arm[3] = {}, shift[3] = {};
   double direction[3] = {};                ///< guide
   double outward[3] = {}, onward[3] = {};  ///< crank: unit vectors centre → rod at home, and ahead
-  double length = 0, side = 1, radius = 1;  ///< rod (strut at home), root, crank arm
-  double min = 0, max = 0, tolerance = 0;   ///< of the drive, and between rods of a carriage
-  int reach = 0, min_limit = 0, max_limit = 0;
+  double length = 0, side = 1, radius = 1;         ///< rod (strut at home), root, crank arm
+  double min = 0, max = 0, tolerance = 0;          ///< of the drive, and between rods of a carriage
+  double reach = 0, min_limit = 0, max_limit = 0;  ///< indices of limits, as all `limit`s
   int first_cone = 0, last_cone = 0;
 };
 
 /// Deflection of a rod: along·axis >= cosine; the axis is fixed in base, crank or platform.
 struct ConeData {
   enum class On { base, crank, platform } on = On::base;
-  double axis[3] = {}, cosine = -1;
-  int limit = 0;
+  double axis[3] = {}, cosine = -1, limit = 0;
 };
 
 /// normal·(t + R·arm) + slope·drive <= offset, for every arm; without arms the
 /// middle term is in the offset.
 struct PlaneData {
-  double normal[3] = {}, offset = 0, slope = 0;
-  int drive = 0, limit = 0;
-  int first_arm = 0, last_arm = 0;
+  double normal[3] = {}, offset = 0, slope = 0, limit = 0;
+  int drive = 0, first_arm = 0, last_arm = 0;
 };
 
 /// A machine in the words of the kernel.
@@ -55,7 +54,7 @@ struct KernelModel {
   std::vector<PlaneData> planes;
   std::vector<double> arms;   ///< of the planes, three each
   std::vector<double> lever;  ///< per drive: crank arm, else 1
-  int motion = 0, not_finite = 0;
+  double motion = 0, not_finite = 0;
 };
 
 /// Columns of poses. Angles absent (null) are zero; quaternions stand for angles.
@@ -69,8 +68,8 @@ struct KernelInput {
 /// Columns of answers; null where not wanted. Drives and Jacobian have `stride`
 /// poses from one column to the next.
 struct KernelOutput {
-  double* limit = nullptr;        ///< first limit met, negative when there is none
-  double* orientation = nullptr;  ///< det J
+  int* limit = nullptr;                ///< first limit met, negative when there is none
+  signed char* orientation = nullptr;  ///< sign of det J
   double *condition = nullptr, *frobenius = nullptr, *smallest = nullptr, *transmission = nullptr;
   double *softest = nullptr, *stiffest = nullptr;
   double *drives = nullptr, *jacobian = nullptr;
@@ -86,10 +85,11 @@ struct ForwardColumns {
   double* residual = nullptr;
 };
 
-/// What an instruction set offers. `count` is a multiple of `lanes`, at most kBlock.
+/// What an instruction set offers. `count` is a multiple of `lanes` or `forward_lanes`, at
+/// most kBlock.
 struct Kernel {
   const char* name;
-  int lanes;
+  int lanes, forward_lanes;
   void (*evaluate)(const KernelModel&, const KernelInput&, const KernelOutput&, int count);
   void (*forward)(const KernelModel&, const ForwardColumns&, int count);
 };

@@ -105,12 +105,14 @@ signed char sign_of(double value) { return static_cast<signed char>((value > 0) 
 class KernelRun {
  public:
   KernelRun(const batch::KernelModel& model, const PoseBatch& poses, BatchResult& result)
-      : model_(model), kernel_(batch::kernel_named(poses.instructions)), result_(result) {
+      : model_(model), kernel_(batch::kernel_named(poses.instructions)) {
     in_ = {poses.x.data(), poses.y.data(), poses.z.data()};
     const auto given = [](const std::vector<double>& v) { return v.empty() ? nullptr : v.data(); };
     for (int k = 0; k < 4; ++k) in_.quaternion[k] = given(poses.quaternion[k]);
     for (int k = 0; k < 3; ++k) in_.angle[k] = given(poses.angles[k]);
     const auto wanted = [](std::vector<double>& v) { return v.empty() ? nullptr : v.data(); };
+    out_.limit = result.limit.data();
+    out_.orientation = result.orientation.empty() ? nullptr : result.orientation.data();
     out_.condition = wanted(result.inverse_condition);
     out_.frobenius = wanted(result.frobenius);
     out_.smallest = wanted(result.smallest);
@@ -155,15 +157,17 @@ class KernelRun {
     batch::KernelInput in = in_;
     advance(in, first);
     batch::KernelOutput out = out_;
+    out.limit += first;
+    if (out.orientation) out.orientation += first;
     for_each_output(out, model_, [first](double*& column, int) {
       if (column) column += first;
     });
-    call(in, out, first, count, count);
+    kernel_.evaluate(model_, in, out, static_cast<int>(count));
   }
 
   /// Poses that fill no register: padded with the last one.
   void run_rest(std::size_t first, std::size_t count) const {
-    constexpr std::size_t kWidest = 8;
+    constexpr std::size_t kWidest = batch::kMostLanes;
     double inputs[10][kWidest];
     batch::KernelInput in = in_;
     advance(in, first);
@@ -178,43 +182,32 @@ class KernelRun {
     for (auto& column : in.angle) pad(column);
     for (auto& column : in.quaternion) pad(column);
 
-    batch::KernelOutput out = out_;
-    std::vector<double> answers(kWidest *
-                                static_cast<std::size_t>(6 + model_.drives * (1 + model_.columns)));
-    std::size_t at = 0;
-    for_each_output(out, model_, [&](double*& column, int columns) {
-      if (column) column = &answers[at];
-      at += kWidest * static_cast<std::size_t>(columns);
-    });
+    int limits[kWidest];
+    signed char orientations[kWidest];
+    double answers[6 + 7 * batch::kMostDrives][kWidest];
+    batch::KernelOutput out = out_, whole = out_;
+    out.limit = limits;
+    if (out.orientation) out.orientation = orientations;
     out.stride = kWidest;
-    call(in, out, first, static_cast<std::size_t>(kernel_.lanes), count);
-    std::vector<double*> targets;
-    batch::KernelOutput whole = out_;
-    for_each_output(whole, model_, [&](double*& column, int columns) {
-      for (int c = 0; c < columns; ++c)
-        targets.push_back(column ? column + static_cast<std::size_t>(c) * out_.stride + first
-                                 : nullptr);
+    int at = 0;
+    for_each_output(out, model_, [&](double*& column, int columns) {
+      if (column) column = answers[at];
+      at += columns;
     });
-    for (std::size_t c = 0; c < targets.size(); ++c)
-      if (targets[c]) std::copy_n(&answers[c * kWidest], count, targets[c]);
-  }
-
-  /// Calls the kernel and keeps `used` of its answers.
-  void call(const batch::KernelInput& in, batch::KernelOutput& out, std::size_t first,
-            std::size_t count, std::size_t used) const {
-    double limit[batch::kBlock], orientation[batch::kBlock];
-    out.limit = limit;
-    out.orientation = result_.orientation.empty() ? nullptr : orientation;
-    kernel_.evaluate(model_, in, out, static_cast<int>(count));
-    for (std::size_t i = 0; i < used; ++i) result_.limit[first + i] = static_cast<int>(limit[i]);
-    if (out.orientation)
-      for (std::size_t i = 0; i < used; ++i)
-        result_.orientation[first + i] = sign_of(orientation[i]);
+    kernel_.evaluate(model_, in, out, kernel_.lanes);
+    std::copy_n(limits, count, whole.limit + first);
+    if (out.orientation) std::copy_n(orientations, count, whole.orientation + first);
+    at = 0;
+    for_each_output(whole, model_, [&](double*& column, int columns) {
+      for (int c = 0; column && c < columns; ++c)
+        std::copy_n(answers[at + c], count,
+                    column + static_cast<std::size_t>(c) * out_.stride + first);
+      at += columns;
+    });
   }
 
   const batch::KernelModel& model_;
   const batch::Kernel& kernel_;
-  BatchResult& result_;
   batch::KernelInput in_;
   batch::KernelOutput out_;
 };
@@ -404,7 +397,7 @@ void Evaluator::forward(const DriveBatch& drives, ForwardResult& result) const {
 
 void Evaluator::forward_legs(const DriveBatch& drives, ForwardResult& result) const {
   const batch::Kernel& kernel = batch::kernel_named(drives.instructions);
-  const auto lanes = static_cast<std::size_t>(kernel.lanes);
+  const auto lanes = static_cast<std::size_t>(kernel.forward_lanes);
   const std::size_t rows = machine_.model.drives.size();
   in_blocks(drives.size, kGrain, [&](std::size_t first, std::size_t last) {
     const std::size_t whole = (last - first) - (last - first) % lanes;
@@ -415,7 +408,7 @@ void Evaluator::forward_legs(const DriveBatch& drives, ForwardResult& result) co
     if (whole > 0) kernel.forward(model_->turning(), io, static_cast<int>(whole));
     if (whole == last - first) return;
     // The rest fills no register: padded with the last one.
-    constexpr std::size_t kWidest = 8;
+    constexpr std::size_t kWidest = batch::kMostLanes;
     const std::size_t begin = first + whole, count = last - begin;
     std::vector<double> drive(rows * kWidest);
     double pose[8][kWidest];
@@ -433,7 +426,7 @@ void Evaluator::forward_legs(const DriveBatch& drives, ForwardResult& result) co
                     pose[2],
                     {pose[3], pose[4], pose[5], pose[6]},
                     pose[7]},
-                   kernel.lanes);
+                   kernel.forward_lanes);
     for (std::size_t k = 0; k < 7; ++k) std::copy_n(pose[k], count, &result.pose[k][begin]);
     std::copy_n(pose[7], count, &result.residual[begin]);
   });

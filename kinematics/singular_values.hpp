@@ -8,9 +8,6 @@
 /// one_sided_jacobi(), which keeps them all. Needs no memory but the stack.
 namespace polyglide::simd {
 
-template <class V>
-using MaskOf = decltype(V(0) < V(0));
-
 /// Least and greatest eigenvalue of JᵀJ = squares of the extreme singular values of J.
 template <class V>
 struct Extremes {
@@ -39,7 +36,6 @@ inline V cosine_of_two_thirds(const V& w) {
   return p + u * q;
 }
 
-constexpr double kTiny = 1e-300;  // keeps 0/0 out of code without branches
 // Least over greatest eigenvalue below which JᵀJ is too rough.
 constexpr double kIllConditioned = 1e-5;
 
@@ -47,14 +43,14 @@ constexpr double kIllConditioned = 1e-5;
 /// q + 2p cos(θ/3), r = cos θ (Smith 1961); with w = cos(θ/2) this is f(w). The other two
 /// follow from trace and determinant.
 template <class V>
-inline Extremes<V> extremes3(const V (&g)[3][3], const V& determinant) {
+[[gnu::always_inline]] inline Extremes<V> extremes3(const V (&g)[3][3], const V& determinant) {
   const V sum3 = g[0][0] + g[1][1] + g[2][2], q = sum3 * V(1.0 / 3);
   const V a = g[0][0] - q, b = g[1][1] - q, c = g[2][2] - q;
   const V xy = g[0][1], xz = g[0][2], yz = g[1][2];
   const V p2 = (a * a + b * b + c * c) * V(1.0 / 6) + (xy * xy + xz * xz + yz * yz) * V(1.0 / 3);
-  const V p = sqrt(p2);
+  const auto [p, inverse] = root_of(p2 + V(kSmall));
   const V deviator = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
-  const V r = max(V(-1), min(V(1), deviator / (V(2) * p * p2 + V(kTiny))));
+  const V r = max(V(-1), min(V(1), V(0.5) * deviator * inverse * inverse * inverse));
   const V w = sqrt(V(0.5) + V(0.5) * r);
   const V greatest = q + V(2) * p * cosine_of_two_thirds(w);
   const V sum = sum3 - greatest, product = determinant / (greatest + V(kTiny));
