@@ -88,26 +88,27 @@ class Pieces {
   Pieces(const Function& function, double range, double tolerance)
       : function_(function), range_(range), tolerance_(tolerance) {}
 
-  void run(double a, const Sample& left, double b, const Sample& right, int depth = 0) {
-    const double width = b - a;
-    if (left.pattern == right.pattern) {
-      piece(a, left, b, right, depth);
-      return;
+  /// A place and the sample there.
+  struct Mark {
+    double at;
+    Sample sample;
+  };
+
+  /// Places in ascending order, the ends among them.
+  void run(const std::vector<Mark>& marks, int depth = 0) {
+    // Bisection where neighbours differ, so that runs of one pattern and the gaps between are left.
+    std::vector<Mark> fine{marks.front()};
+    for (std::size_t i = 1; i < marks.size(); ++i) {
+      separate(fine, marks[i], depth);
+      fine.push_back(marks[i]);
     }
-    const double before = total(left.numbers), after = total(right.numbers);
-    // What a trapezium makes of a kink, or of a jump.
-    const double doubt =
-        width * (std::abs(before - after) + 0.02 * width / range_ * (before + after));
-    if (doubt < tolerance_ / 400 || width < 4e-15 * (std::abs(a) + std::abs(b)) ||
-        depth > kDeepest) {
-      error += doubt;
-      add_gap(a, left, b, right);
-      return;
+    for (std::size_t i = 0; i < fine.size();) {
+      std::size_t j = i;
+      while (j + 1 < fine.size() && fine[j + 1].sample.pattern == fine[i].sample.pattern) ++j;
+      if (j > i) piece(fine[i], fine[j], depth);
+      if (j + 1 < fine.size()) add_gap(fine[j], fine[j + 1]);
+      i = j + 1;
     }
-    const double middle = a + width / 2;
-    const Sample sample = function_(middle);
-    run(a, left, middle, sample, depth + 1);
-    run(middle, sample, b, right, depth + 1);
   }
 
   /// To be called after the last run().
@@ -121,8 +122,31 @@ class Pieces {
  private:
   static constexpr int kDeepest = 60;
 
+  /// What a trapezium makes wrong of a kink, or of a jump.
+  double doubt(const Mark& a, const Mark& b) const {
+    const double before = total(a.sample.numbers), after = total(b.sample.numbers);
+    const double width = b.at - a.at;
+    return width * (std::abs(before - after) + 0.02 * width / range_ * (before + after));
+  }
+
+  /// Appends what has to be known between the last mark and the next.
+  void separate(std::vector<Mark>& fine, const Mark& next, int depth) {
+    const Mark last = fine.back();
+    if (last.sample.pattern == next.sample.pattern || doubt(last, next) < tolerance_ / 100 ||
+        next.at - last.at < 4e-15 * (std::abs(last.at) + std::abs(next.at)) || depth > kDeepest)
+      return;
+    const double middle = last.at + (next.at - last.at) / 2;
+    const Mark between{middle, function_(middle)};
+    separate(fine, between, depth + 1);
+    fine.push_back(between);
+    separate(fine, next, depth + 1);
+  }
+
   /// Each half of a gap goes to its side: to the leaf there, or to one of no width.
-  void add_gap(double a, const Sample& left, double b, const Sample& right) {
+  void add_gap(const Mark& from, const Mark& to) {
+    const auto& [a, left] = from;
+    const auto& [b, right] = to;
+    error += doubt(from, to);
     if (half_gap_ == 0 && !leaves.empty() && leaves.back().right.pattern == left.pattern)
       add_half(leaves.back(), left, (b - a) / 2);
     else
@@ -145,7 +169,16 @@ class Pieces {
     leaves.push_back(std::move(leaf));
   }
 
-  void piece(double a, const Sample& left, double b, const Sample& right, int depth) {
+  void piece_or_run(const Mark& from, const Mark& to, int depth) {
+    if (from.sample.pattern == to.sample.pattern)
+      piece(from, to, depth);
+    else
+      run({from, to}, depth);
+  }
+
+  void piece(const Mark& from, const Mark& to, int depth) {
+    const auto& [a, left] = from;
+    const auto& [b, right] = to;
     const std::size_t count = left.numbers.size();
     Leaf<Sample> leaf{a, b, left, right, {}, std::vector<double>(count, 0.0), 0};
     const double width = b - a;
@@ -158,10 +191,7 @@ class Pieces {
       const double at = a + width * s * s * (3 - 2 * s);
       Sample sample = function_(at);
       if (sample.pattern != left.pattern) {
-        if (at > a && at < b) {
-          run(a, left, at, sample, depth + 1);
-          run(at, sample, b, right, depth + 1);
-        }
+        if (at > a && at < b) run({from, {at, std::move(sample)}, to}, depth + 1);
         return;
       }
       const double speed = 3 * s * (1 - s) * width;  // half of 6 s (1 - s)
@@ -182,10 +212,9 @@ class Pieces {
         spread > 0 ? spread * std::min(1.0, std::pow(200 * difference / spread, 1.5)) : difference;
     const double allowed = tolerance_ / 8 * std::max(std::sqrt(width / range_), 0.02);
     if (leaf.error > allowed && depth < kDeepest && width > 1e-9 * range_) {
-      const double middle = a + width / 2;
-      const Sample sample = function_(middle);
-      run(a, left, middle, sample, depth + 1);
-      run(middle, sample, b, right, depth + 1);
+      const Mark middle{a + width / 2, function_(a + width / 2)};
+      piece_or_run(from, middle, depth + 1);
+      piece_or_run(middle, to, depth + 1);
       return;
     }
     if (half_gap_ > 0) add_half(leaf, after_gap_, half_gap_);
@@ -215,7 +244,8 @@ class Measurer {
   }
 
  private:
-  static constexpr int kFirst = 32;  // planes, and lines in each, to begin with
+  static constexpr double kShare = 8;  // part of the tolerance that planes take
+  static constexpr int kFirst = 32;    // planes, and lines in each, to begin with
 
   Line line(double x, double y) const {
     Line result;
@@ -239,15 +269,12 @@ class Measurer {
     const double low = extent_.lower.y(), range = extent_.upper.y() - low;
     const auto at = [&](double y) { return line(x, y); };
     Pieces<Line, decltype(at)> pieces(at, range, tolerance);
-    Line left = at(low);
-    double from = low;
-    for (int i = 1; i <= kFirst; ++i) {
-      const double to = low + range * i / kFirst;
-      Line right = at(to);
-      pieces.run(from, left, to, right);
-      from = to;
-      left = std::move(right);
+    std::vector<typename Pieces<Line, decltype(at)>::Mark> marks;
+    for (int i = 0; i <= kFirst; ++i) {
+      const double y = low + range * i / kFirst;
+      marks.push_back({y, at(y)});
     }
+    pieces.run(marks);
     pieces.finish();
     result.error = pieces.error;
     Groups groups;
@@ -328,14 +355,24 @@ class Measurer {
   std::optional<ExactMeasure> spatial(const Vector3& inside) {
     const double low = extent_.lower.x(), range = extent_.upper.x() - low;
     const double tolerance = search_.tolerance * size_;
-    const auto at = [&](double x) { return plane(x, tolerance / range / 20); };
+    const auto at = [&](double x) { return plane(x, tolerance / range / kShare); };
     using PlanePieces = Pieces<Plane, decltype(at)>;
-    std::vector<Plane> first(kFirst + 1);
-    tbb::parallel_for(0, kFirst + 1, [&](int i) { first[i] = at(low + range * i / kFirst); });
-    std::vector<PlanePieces> pieces(kFirst, PlanePieces(at, range, tolerance));
-    tbb::parallel_for(0, kFirst, [&](int i) {
-      pieces[i].run(low + range * i / kFirst, first[i], low + range * (i + 1) / kFirst,
-                    first[i + 1]);
+    std::vector<typename PlanePieces::Mark> first(kFirst + 1);
+    tbb::parallel_for(0, kFirst + 1, [&](int i) {
+      const double x = low + range * i / kFirst;
+      first[i] = {x, at(x)};
+    });
+    // Stretches of planes, for the threads; each starts where the one before ended.
+    std::vector<std::vector<typename PlanePieces::Mark>> stretches(1);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      stretches.back().push_back(first[i]);
+      if (i > 0 && i + 1 < first.size() && stretches.back().size() > kFirst / 8) {
+        stretches.push_back({first[i]});
+      }
+    }
+    std::vector<PlanePieces> pieces(stretches.size(), PlanePieces(at, range, tolerance));
+    tbb::parallel_for(std::size_t{0}, stretches.size(), [&](std::size_t i) {
+      pieces[i].run(stretches[i]);
       pieces[i].finish();
     });
     ExactMeasure result;
@@ -382,7 +419,7 @@ class Measurer {
         if (root == own) result.value += leaves[i]->integrals[c];
       }
     // Every plane was known to its own tolerance.
-    result.error += tolerance / 20;
+    result.error += tolerance / kShare;
     result.parts = static_cast<int>(parts.size());
     return finished(result);
   }
