@@ -146,7 +146,7 @@ int run_workspace(CommandLine& line) {
                  "Does a cylinder diameter x height fit, as in 230x170 (file units)");
   app.add_option("--turned", turned, "Orientation a,b,c of the platform (default: as at home)");
   app.add_option("--accuracy", how.accuracy, "Relative accuracy of the volume")
-      ->check(CLI::Range(1e-5, 0.1));
+      ->check(CLI::Range(1e-12, 0.1));
   CertifyOptions certified;
   auto* certify_flag = app.add_flag("--certify", certified.wanted,
                                     "Prove that the whole --box DX,DY,DZ[@X,Y,Z] can be used");

@@ -48,6 +48,27 @@ using Rotation = IntervalRotation;
 
 // --- Platforms placed by distances ---
 
+/// An axis of unit length: what rounding left of it is widened, what is exact stays exact.
+IntervalVector unit_axis(const Vector3& axis) {
+  IntervalVector result = vector_of(axis);
+  if (axis.cwiseAbs().sum() == 1 && axis.cwiseAbs().maxCoeff() == 1) return result;
+  for (int i = 0; i < 3; ++i)
+    if (axis[i] != 0) result[i] = outward(axis[i], axis[i], 2);
+  return result;
+}
+
+/// Where the crank carries its rod's joint. Any point of the axis will do as its centre.
+IntervalVector on_crank(const Leg& leg, double drive) {
+  IntervalVector centre, crank;
+  for (int i = 0; i < 3; ++i) {
+    centre[i] = leg.centre[i];
+    crank[i] = Interval(leg.base_point[i]) - centre[i];
+  }
+  IntervalVector result = turned(rotation_about(unit_axis(leg.direction), Interval(drive)), crank);
+  for (int i = 0; i < 3; ++i) result[i] += centre[i];
+  return result;
+}
+
 /// |R p + t - centre|² = radius², p from the tool.
 struct Distance {
   IntervalVector arm, centre;
@@ -58,15 +79,16 @@ Distance distance_of(const Machine& machine, const Leg& leg, double drive) {
   const Vector3& tool = machine.model.mechanism.tool;
   const IntervalVector p = vector_of(leg.platform_point), b = vector_of(leg.base_point);
   Distance result;
-  const bool guide = leg.kind == Leg::Kind::guide_rod;
+  IntervalVector place = b;
+  if (leg.kind == Leg::Kind::crank_rod) place = on_crank(leg, drive);
   for (int i = 0; i < 3; ++i) {
     result.arm[i] = p[i] - tool[i];
-    result.centre[i] = b[i] - tool[i];
-    if (guide) result.centre[i] += Interval(drive) * leg.direction[i];
+    if (leg.kind == Leg::Kind::guide_rod) place[i] += Interval(drive) * leg.direction[i];
+    result.centre[i] = place[i] - tool[i];
   }
   // Lengths are those of the file's points, not of their rounded distance.
   result.radius = root(squared_norm({p[0] - b[0], p[1] - b[1], p[2] - b[2]}));
-  if (!guide) result.radius += drive;
+  if (leg.kind == Leg::Kind::strut) result.radius += drive;
   return result;
 }
 
@@ -92,15 +114,6 @@ struct Place {
 Place operator*(const Place& a, const Place& b) {
   Place result{product(a.rotation, b.rotation), turned(a.rotation, b.shift)};
   for (int i = 0; i < 3; ++i) result.shift[i] += a.shift[i];
-  return result;
-}
-
-/// An axis of unit length: what rounding left of it is widened, what is exact stays exact.
-IntervalVector unit_axis(const Vector3& axis) {
-  IntervalVector result = vector_of(axis);
-  if (axis.cwiseAbs().sum() == 1 && axis.cwiseAbs().maxCoeff() == 1) return result;
-  for (int i = 0; i < 3; ++i)
-    if (axis[i] != 0) result[i] = outward(axis[i], axis[i], 2);
   return result;
 }
 
@@ -257,10 +270,43 @@ std::vector<int> live_rows(const Enclosure& on_box) {
   return rows;
 }
 
-/// Does what the drives leave free move the platform?
+/// Rows and columns of a largest regular part, empty when the rank is in doubt.
+struct Independent {
+  std::vector<int> rows, columns;
+};
+
+Independent independent_part(const Eigen::MatrixXd& jacobian) {
+  constexpr double kZero = 1e-10, kDoubt = 1e-7;  // of the greatest pivot
+  const auto leading = [&](const Eigen::MatrixXd& matrix) -> std::optional<std::vector<int>> {
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
+    std::vector<int> columns;
+    for (Eigen::Index i = 0; i < qr.matrixR().diagonal().size(); ++i) {
+      const double pivot = std::abs(qr.matrixR()(i, i)) / qr.maxPivot();
+      if (!(pivot > kZero)) break;
+      if (pivot < kDoubt) return std::nullopt;
+      columns.push_back(qr.colsPermutation().indices()[i]);
+    }
+    return columns;
+  };
+  Independent result;
+  const auto rows = leading(jacobian.transpose());
+  if (!rows) return result;
+  const auto columns = leading(jacobian(*rows, Eigen::all));
+  if (!columns || columns->size() != rows->size()) return result;
+  return {*rows, *columns};
+}
+
+std::vector<int> picked(const std::vector<int>& from, const std::vector<int>& which) {
+  std::vector<int> result;
+  for (int i : which) result.push_back(from[i]);
+  return result;
+}
+
+/// Does what the drives leave free move the platform? @param rank of the Jacobian.
 bool platform_is_held(const Model& model, const Posture& posture, const Eigen::MatrixXd& jacobian,
-                      const std::vector<int>& passive) {
-  const Eigen::MatrixXd kernel = Eigen::FullPivLU<Eigen::MatrixXd>(jacobian).kernel();
+                      const std::vector<int>& passive, int rank) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeFullV);
+  const Eigen::MatrixXd kernel = svd.matrixV().rightCols(jacobian.cols() - rank);
   const Eigen::MatrixXd platform = columns(
       body_jacobian(model, posture, model.mechanism.platform) * freedom_scale(model).asDiagonal(),
       passive);
@@ -279,7 +325,6 @@ ModeCertificate certify_pose(const Machine& machine, const std::vector<int>& leg
   std::vector<Distance> distances;
   for (int index : legs) {
     const Leg& leg = machine.legs->legs[index];
-    if (leg.kind == Leg::Kind::crank_rod) return {};  // no enclosure of an arm's turn yet
     distances.push_back(distance_of(machine, leg, drives[leg.drive]));
   }
   const Rotation at = rotation_of(pose.rotation);
@@ -317,34 +362,45 @@ ModeCertificate certify_closure(const Model& model, const Posture& posture) {
   constexpr double kNear = 1e-3;  // no box to be tried is larger in its effect than this
   std::vector<Interval> wide(model.freedoms.size(), Interval(0.0));
   for (int f : passive) wide[f] = Interval(-kNear, kNear);
-  const std::vector<int> rows = live_rows(closure.enclose(wide));
-  const int n = static_cast<int>(rows.size());
-  if (n == 0 || n > static_cast<int>(passive.size())) return {};
+  const std::vector<int> live = live_rows(closure.enclose(wide));
+  if (live.empty()) return {};
 
   const Eigen::MatrixXd all =
       middle(closure.enclose(std::vector<Interval>(model.freedoms.size(), Interval(0.0))).jacobian);
-  const Eigen::MatrixXd jacobian = all(rows, passive);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian);
-  if (std::abs(qr.matrixR()(n - 1, n - 1)) < 1e-10 * qr.maxPivot()) return {};
-  if (n < static_cast<int>(passive.size()) && !platform_is_held(model, posture, jacobian, passive))
+  const Eigen::MatrixXd jacobian = all(live, passive);
+  const Independent chosen = independent_part(jacobian);
+  const int n = static_cast<int>(chosen.rows.size());
+  if (n == 0) return {};
+  if (n < static_cast<int>(passive.size()) &&
+      !platform_is_held(model, posture, jacobian, passive, n))
     return {};
-  std::vector<int> unknown;
-  for (int i = 0; i < n; ++i) unknown.push_back(passive[qr.colsPermutation().indices()[i]]);
+  const std::vector<int> rows = picked(live, chosen.rows);
+  const std::vector<int> unknown = picked(passive, chosen.columns);
 
-  const auto enclose = [&](const std::vector<Interval>& box) {
+  const auto on_box = [&](const std::vector<Interval>& box) {
     std::vector<Interval> increments(model.freedoms.size(), Interval(0.0));
     for (int i = 0; i < n; ++i) increments[unknown[i]] = box[i];
-    const Enclosure whole = closure.enclose(increments);
+    return closure.enclose(increments);
+  };
+  ModeCertificate certificate = prove_root(n, [&](const std::vector<Interval>& box) {
+    const Enclosure whole = on_box(box);
     Enclosure result{std::vector<Interval>(n), IntervalMatrix(n, n)};
     for (int i = 0; i < n; ++i) {
       result.values[i] = whole.values[rows[i]];
       for (int j = 0; j < n; ++j) result.jacobian(i, j) = whole.jacobian(rows[i], unknown[j]);
     }
     return result;
-  };
-  const ModeCertificate certificate = prove_root(n, enclose);
+  });
   // The rows that vanish were looked at within kNear only.
-  return certificate.radius < kNear ? certificate : ModeCertificate{};
+  if (!certificate.proved || !(certificate.radius < kNear)) return {};
+  if (n == static_cast<int>(live.size())) return certificate;
+  const double radius = certificate.radius;
+  const Enclosure rest = on_box(std::vector<Interval>(n, Interval(-radius, radius)));
+  constexpr double kFits = 1e-9;
+  const bool fits = std::all_of(live.begin(), live.end(),
+                                [&](int row) { return magnitude(rest.values[row]) < kFits; });
+  certificate.redundant = static_cast<int>(live.size()) - n;
+  return fits ? certificate : ModeCertificate{};
 }
 
 }  // namespace polyglide

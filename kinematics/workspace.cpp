@@ -8,6 +8,7 @@
 
 #include "kinematics/certified_volume.hpp"
 #include "kinematics/clearance.hpp"
+#include "kinematics/exact_workspace.hpp"
 #include "kinematics/region_boundary.hpp"
 #include "kinematics/region_measure.hpp"
 
@@ -75,7 +76,12 @@ void take_measure(Workspace& result, const Probe& probe, const Region& region,
     result.volume = measured.value;
     result.volume_lower = measured.lower;
     result.volume_upper = measured.upper;
+  } else if (probe.dimensions() == 2) {
+    result.area = measured.value;
+    result.area_lower = measured.lower;
+    result.area_upper = measured.upper;
   }
+  result.error = measured.standard_error;
   const std::array<bool, 3>& active = probe.active();
   if (!active[0] || !active[1]) return;
   const double thickness = active[2] ? region.grid.step : 1;
@@ -86,11 +92,17 @@ void take_measure(Workspace& result, const Probe& probe, const Region& region,
   }
 }
 
+/// Sampling is no way to more than that; what is asked beyond is left to quadrature.
+double sampled_accuracy(const WorkspaceOptions& options) {
+  constexpr double kDefault = 5e-4, kFinest = 1e-5;
+  return options.accuracy < kFinest ? kDefault : options.accuracy;
+}
+
 /// Puts proved bounds in place of sampled ones, where there is a proof.
 void certify(Workspace& result, const Machine& machine, const WorkspaceOptions& options,
              const Region& region, const Bounds& reach) {
   constexpr double kOfAccuracy = 2;  // bounds as wide as the volume is uncertain to either side
-  const double tolerance = std::max(kOfAccuracy * options.accuracy, 1e-4);
+  const double tolerance = std::max(kOfAccuracy * sampled_accuracy(options), 1e-4);
   // Bounds made by clearances close slowly; where they stay wide, sampled ones say more.
   constexpr double kWidest = 0.05;
   constexpr int kBudget = 600000, kBudgetOfClearances = 20000;
@@ -111,13 +123,15 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
   const auto start = std::chrono::steady_clock::now();
   const Evaluator evaluator(machine, options.ignored);
   Probe probe(evaluator, options.rotation);
-  const RegionFineness fineness = region_fineness(options.accuracy, evaluator.closed_form());
+  const RegionFineness fineness =
+      region_fineness(sampled_accuracy(options), evaluator.closed_form());
 
   Workspace result;
   result.characteristic_length = machine.task.characteristic_length;
   const Region region = explore(probe, fineness.nodes);
   if (!region.empty) {
-    take_measure(result, probe, region, measure_region(probe, region, fineness, options.accuracy));
+    take_measure(result, probe, region,
+                 measure_region(probe, region, fineness, sampled_accuracy(options)));
     const Boundary boundary = find_boundary(probe, region, fineness.bisections);
     result.limits_hit = boundary.limits;
     if (!options.volume_only && probe.dimensions() == 3)
@@ -127,6 +141,7 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
     if (!options.volume_only)
       result.slices = make_slices(probe, region, boundary.extent, options.slices);
   }
+  if (!options.volume_only) measure_by_quadrature(result, probe, region, options);
   if (!region.empty && (!options.volume_only || options.box || options.cylinder)) {
     const Inscriber inscriber(probe, region);
     if (!options.volume_only) {

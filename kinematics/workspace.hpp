@@ -33,6 +33,17 @@ struct Slice {
 struct Workspace {
   double volume = 0;
   double volume_lower = 0, volume_upper = 0;  ///< cells wholly in / not wholly out
+  /// How `volume` (or `area`) came about: "quadrature" over its pieces, or "sampling".
+  std::string method = "sampling";
+  double error = 0;  ///< estimated, of volume [m³] or area [m²]
+  /// Size of all places where the limits hold, on either side of singular surfaces and in other
+  /// parts too [m³ or m²]; by quadrature only.
+  std::optional<double> reach;
+  /// Of machines that move in a plane [m²]; volume is 0 then.
+  std::optional<double> area;
+  double area_lower = 0, area_upper = 0;
+  bool singular_throughout =
+      false;               ///< every pose of this orientation is singular: limits alone count
   bool certified = false;  ///< the bounds are proved by intervals; else estimated by sampling
   Vector3 lower = Vector3::Zero(), upper = Vector3::Zero();  ///< bounding box of reachable cells
   std::vector<std::pair<double, double>> area_by_z;

@@ -55,6 +55,15 @@ Json to_json(const Workspace& workspace) {
   Json json;
   json["volume"] = workspace.volume;
   json["volume_bounds"] = {workspace.volume_lower, workspace.volume_upper};
+  json["volume_error"] = workspace.area ? 0 : workspace.error;
+  if (workspace.area) {
+    json["area"] = *workspace.area;
+    json["area_bounds"] = {workspace.area_lower, workspace.area_upper};
+    json["area_error"] = workspace.error;
+  }
+  json["method"] = workspace.method;
+  json["reach"] = workspace.reach ? Json(*workspace.reach) : Json(nullptr);
+  if (workspace.singular_throughout) json["singular_throughout"] = true;
   json["bounds"] = workspace.certified ? "certified" : "estimated";
   json["extent"] = {{"lower", json_of(workspace.lower)}, {"upper", json_of(workspace.upper)}};
   json["area_by_z"] = Json::array();
