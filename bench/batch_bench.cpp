@@ -15,11 +15,19 @@ struct Case {
   const Machine& machine;
   const PoseBatch& poses;
   unsigned wanted;
+  std::vector<std::string> ignored = kIgnored;
 };
 
 const std::vector<Case>& cases() {
   static const std::vector<Case> list{
       {"delta/condition", delta(), delta_poses(), Wanted::drives | Wanted::condition},
+      // What peers leave out: cones and the paper's triangle; and legs that are not alike.
+      {"delta all limits/condition",
+       delta(),
+       delta_poses(),
+       Wanted::drives | Wanted::condition,
+       {}},
+      {"table1-6/condition", four_axes(), four_axes_poses(), Wanted::drives | Wanted::condition},
       {"hexapod/jacobian", hexapod(), hexapod_poses(), Wanted::drives | Wanted::jacobian},
       {"hexapod/frobenius", hexapod(), hexapod_poses(), Wanted::drives | Wanted::frobenius},
       {"hexapod/condition", hexapod(), hexapod_poses(), Wanted::drives | Wanted::condition}};
@@ -29,7 +37,7 @@ const std::vector<Case>& cases() {
 /// Mean operations per pose.
 double count_operations(const Case& item) {
   constexpr int kCount = 200;
-  const BatchModel model(Evaluator(item.machine, kIgnored).machine(), kIgnored);
+  const BatchModel model(Evaluator(item.machine, item.ignored).machine(), item.ignored);
   const PoseBatch& poses = item.poses;
   batch::KernelInput in{poses.x.data(), poses.y.data(), poses.z.data(), {}, {}};
   for (int k = 0; k < 3; ++k)
@@ -50,7 +58,7 @@ double count_operations(const Case& item) {
 void run(benchmark::State& state, const Case& item, const std::string& instructions,
          double operations) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Evaluator evaluator(item.machine, kIgnored);
+  const Evaluator evaluator(item.machine, item.ignored);
   PoseBatch poses = item.poses;
   poses.wanted = item.wanted;
   poses.instructions = instructions;

@@ -26,6 +26,11 @@ inline const Machine& hexapod() {
   return machine;
 }
 
+inline const Machine& four_axes() {
+  static const Machine machine = prepare(expand(find_layout("table1-6")));
+  return machine;
+}
+
 /// Peers check strokes only, so cones and half-spaces do not count here either.
 inline const std::vector<std::string> kIgnored{"cone", "triangle", "table"};
 constexpr std::size_t kPoses = 20000;
@@ -36,6 +41,17 @@ inline const PoseBatch& delta_poses() {
 }
 inline const PoseBatch& hexapod_poses() {
   static const PoseBatch poses = random_poses(kPoses, 0.1, 0.1, 0.25);
+  return poses;
+}
+
+inline const PoseBatch& four_axes_poses() {
+  static const PoseBatch poses = [] {
+    PoseBatch found = random_poses(kPoses, 0.05, 0.05, 0.25);
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::count(four_axes().task.axes.begin(), four_axes().task.axes.end(), 3 + axis) == 0)
+        found.angles[axis].clear();
+    return found;
+  }();
   return poses;
 }
 
