@@ -11,7 +11,9 @@ namespace {
 
 constexpr int kMostLayers = 40;         // of the thinned grid
 constexpr double kFinest = 1.0 / 1024;  // of a grid step: where the pattern search stops
-constexpr double kReserve = 1 + 2e-4;   // a shape asked for is sought this much larger
+constexpr int kRoughSteps = 12;         // of 10 % each, where poses take long
+constexpr int kSphereStarts = 4;
+constexpr double kReserve = 1 + 2e-4;  // a shape asked for is sought this much larger
 
 }  // namespace
 
@@ -72,7 +74,11 @@ Cylinder Inscriber::largest_cylinder() const {
   const Interval* start = best_interval(volume);
   if (!start) return {};
   const Cylinder seed = grid_cylinder(*start);
-  if (!probe_.evaluator().closed_form()) return seed;
+  if (!probe_.evaluator().closed_form()) {
+    const Shape rough = as_shape(seed), axis = axis_point(rough);
+    const Shape fits = shrink(rough, axis, 0.9, kRoughSteps, cylinder_fits(probe_, kRough));
+    return fits[4] > 0 ? as_cylinder(fits) : Cylinder{};
+  }
   ShapeGoal goal;
   goal.moves = volume_moves();
   goal.free = {0, 1, 2, 3, 4};
@@ -173,7 +179,42 @@ std::optional<Box> Inscriber::best_box(const BoxGain& gain, double enough) const
 
 Box Inscriber::largest_box() const {
   const auto volume = [](const Vector3& size) { return size.prod(); };
-  return best_box(volume, std::numeric_limits<double>::infinity()).value_or(Box{});
+  const Box box = best_box(volume, std::numeric_limits<double>::infinity()).value_or(Box{});
+  if (probe_.evaluator().closed_form() || !is_box(as_shape(box))) return box;
+  const Shape rough = as_shape(box);
+  const Shape fits = shrink(rough, middle_of(rough), 0.9, kRoughSteps, box_fits(probe_, kRough));
+  return is_box(fits) ? as_box(fits) : Box{};
+}
+
+/// The largest sphere that a search from a ball of the grid leads to; radius 0 for none.
+Shape Inscriber::polish(const GridBall& ball) const {
+  const Vector3 centre = grid_.at(ball.at[0], ball.at[1], ball.at[2]);
+  Shape shape = as_shape(Sphere{2 * std::max(ball.radius - 1, 0.25) * grid_.step, centre});
+  if (!probe_.evaluator().closed_form())
+    return shrink(shape, centre_of(shape), 0.9, kRoughSteps, sphere_fits(probe_, kRough));
+  ShapeGoal goal;
+  goal.moves = sphere_moves();
+  goal.free = {0, 1, 2, 3};
+  goal.fits = sphere_fits(probe_, kCoarse);
+  goal.gain = [](const Shape& s) { return s[3]; };
+  shape = shrink(shape, centre_of(shape), 0.9, 60, goal.fits);
+  shape = climb(shape, grid_.step, grid_.step / 64, goal);
+  goal.fits = sphere_fits(probe_, kDense);
+  shape = shrink(shape, centre_of(shape), 0.9995, 200, goal.fits);
+  if (!(shape[3] > 0)) return shape;
+  return climb(shape, grid_.step / 32, grid_.step * kFinest, goal);
+}
+
+Sphere Inscriber::largest_sphere() const {
+  if (inside_.empty()) return {};
+  Shape best = as_shape(Sphere{});
+  for (const GridBall& ball : largest_balls(inside_, grid_.count, kSphereStarts)) {
+    // No sphere about a place near this node is larger than the way to the node outside, and a
+    // cell.
+    if ((ball.radius + 1) * grid_.step < best[3]) break;
+    if (const Shape shape = polish(ball); shape[3] > best[3]) best = shape;
+  }
+  return best[3] > 0 ? as_sphere(best) : Sphere{};
 }
 
 std::optional<Cylinder> Inscriber::place(double diameter, double height) const {
