@@ -207,6 +207,9 @@ void print_page(const SingularityMap& map, const std::string& name) {
                 << "\n";
   }
   if (map.curves.empty()) std::cout << "  no singular curve in this slice\n";
+  if (map.branch_changes > 0)
+    std::cout << fmt::format("  {} changes of sign where the solver goes over to another branch\n",
+                             map.branch_changes);
   if (!map.square)
     std::cout << "  more drives than freedoms: singular places are points; 1/κ shows them\n";
   std::cout << fmt::format("  resolution {} x {}; {} poses in {:.2f} s; -o FILE.svg draws it\n",

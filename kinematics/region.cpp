@@ -239,16 +239,16 @@ Region explore(Probe& probe, const Bounds& box, int nodes) {
 }
 
 Region explore(Probe& probe, int nodes) {
-  constexpr int kCoarse = 10000;
+  const int coarse = probe.evaluator().closed_form() ? 10000 : 500;
   Bounds box = search_bounds(probe);
-  Region found = explore(probe, box, std::min(nodes, kCoarse));
+  Region found = explore(probe, box, std::min(nodes, coarse));
   // A small workspace falls between the nodes of a wide box: look nearer to home.
   Points home;
   home.add(Vector3::Zero());
   for (int look = 0; found.empty && look < 8 && probe.all_inside(home); ++look) {
     const Vector3 half = box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs()) / 4;
     box = {box.lower.cwiseMax(-half), box.upper.cwiseMin(half)};
-    found = explore(probe, box, std::min(nodes, kCoarse));
+    found = explore(probe, box, std::min(nodes, coarse));
   }
   if (found.empty) return found;
   // Search bounds can be far too wide: close in.
@@ -261,7 +261,7 @@ Region explore(Probe& probe, int nodes) {
       box.upper[k] = std::min(box.upper[k], found.extent.upper[k] + margin[k]);
     }
     if (look == 1 || ((box.upper - box.lower) - 0.5 * before).maxCoeff() >= 0) break;
-    found = explore(probe, box, std::min(nodes, kCoarse));
+    found = explore(probe, box, std::min(nodes, coarse));
     if (found.empty) return found;
   }
   return explore(probe, box, nodes);

@@ -254,31 +254,40 @@ class Mapper {
       SingularCurve curve;
       curve.closed = contour.closed;
       for (const auto& point : contour.points) curve.points.push_back(place(point));
-      classify(curve, reach);
-      map_.curves.push_back(std::move(curve));
+      if (classify(curve, reach) || reach)
+        map_.curves.push_back(std::move(curve));
+      else
+        ++map_.branch_changes;
     }
   }
 
-  /// Looks at the posture half way along a curve; the points are on its side of class 1.
-  void classify(SingularCurve& curve, bool reach) {
+  /// Looks at postures along a curve until one is singular; the points are on its side of class 1.
+  /// False when none is.
+  bool classify(SingularCurve& curve, bool reach) {
     const Machine& machine = free_.machine();
     if (mobility_ < 0) mobility_ = analyse_mobility(machine.model, screening_options(1)).finite;
-    Coordinates c = options_.at;
-    for (int k = 0; k < 2; ++k) c[options_.axes[k]] = curve.points[curve.points.size() / 2][k];
-    Posture posture = home(machine.model);
-    Singularity found;
-    if (solve_inverse_general(machine, pose_of(c), posture).reachable)
-      found = singularity_at(machine, posture, mobility_, reach ? kAtReach : kNear);
-    const auto add = [&](bool has, const char* word) {
-      if (has) curve.kind += (curve.kind.empty() ? "" : " and ") + std::string(word);
-    };
-    add(found.direct && !(reach && found.inverse), "direct");
-    add(found.inverse, "inverse");
-    add(found.constraint, "constraint");
-    // det J changes its sign through zero, whatever rounding leaves of the margin.
-    if (curve.kind.empty()) curve.kind = reach ? "end of reach" : "direct";
-    curve.gained = found.gained;
-    curve.lost = found.lost;
+    for (double part : {0.5, 0.25, 0.75}) {
+      const auto last = static_cast<double>(curve.points.size() - 1);
+      const auto& point = curve.points[static_cast<std::size_t>(std::lround(part * last))];
+      Coordinates c = options_.at;
+      for (int k = 0; k < 2; ++k) c[options_.axes[k]] = point[k];
+      Posture posture = home(machine.model);
+      if (!solve_inverse_general(machine, pose_of(c), posture).reachable) continue;
+      const Singularity found =
+          singularity_at(machine, posture, mobility_, reach ? kAtReach : kNear);
+      if (found.regular()) continue;
+      const auto add = [&](bool has, const char* word) {
+        if (has) curve.kind += (curve.kind.empty() ? "" : " and ") + std::string(word);
+      };
+      add(found.direct && !(reach && found.inverse), "direct");
+      add(found.inverse, "inverse");
+      add(found.constraint, "constraint");
+      curve.gained = found.gained;
+      curve.lost = found.lost;
+      return true;
+    }
+    curve.kind = "end of reach";
+    return false;
   }
 
   static constexpr double kNear = 1e-4;  // margin beside a curve that was bisected
@@ -341,6 +350,7 @@ nlohmann::ordered_json to_json(const SingularityMap& map) {
                               {"lost", words(curve.lost)},
                               {"points", curve.points}});
   json["cell"] = map.cell;
+  json["branch_changes"] = map.branch_changes;
   json["singular_nodes"] = map.singular_nodes;
   json["u"] = map.u;
   json["v"] = map.v;

@@ -26,7 +26,7 @@ struct SingularCurve {
   /// "direct" (type II: det J changes its sign), "inverse" (type I), "constraint", joined by " and
   /// "; "end of reach" where no posture lies beyond and none of them could be told.
   std::string kind;
-  std::vector<SingularScrew> gained, lost;    ///< half way along it
+  std::vector<SingularScrew> gained, lost;    ///< where it was classified
   std::vector<std::array<double, 2>> points;  ///< [m, rad], bisected; chained
   bool closed = false;
 };
@@ -43,6 +43,9 @@ struct SingularityMap {
   std::vector<int> limit;                 ///< -1 within all limits, else an index into limits
   std::vector<std::string> limits;
   std::vector<SingularCurve> curves;
+  /// Changes of sign at which no posture looked at is singular: there the solver goes over to
+  /// another branch. They are no curves.
+  int branch_changes = 0;
   int singular_nodes = 0;        ///< with 1/κ < 1e-6: singular without a change of sign
   std::array<double, 2> cell{};  ///< finest cells: a closed curve within one is not seen [m, rad]
   std::size_t poses = 0;
@@ -51,7 +54,8 @@ struct SingularityMap {
 
 /// Evaluates a grid, cuts the cells between which the sign of det J or the reach changes, their
 /// neighbours and those that are nearly singular into 4×4, and extracts the curves by marching
-/// squares with ends bisected on the edges. One posture of each curve is classified.
+/// squares with ends bisected on the edges. A posture half way along each curve is classified, or
+/// one of two others when that is regular.
 /// The slice is drawn round what is within limits, or else round what can be reached.
 /// Cost: some 1e5 poses in closed form, some 1e3 otherwise.
 /// @throws std::invalid_argument for axes that are equal or not commanded, or a place not finite

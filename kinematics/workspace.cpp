@@ -54,13 +54,17 @@ std::vector<Slice> make_slices(const Probe& probe, const Region& region, const B
                 spread(extent.lower.y(), extent.upper.y(), samples(size.y())),
                 {}};
     Points points;
+    std::vector<std::size_t> near;
     for (double y : slice.y)
-      for (double x : slice.x) points.add({x, y, z});
+      for (double x : slice.x) {
+        slice.inverse_condition.push_back(std::numeric_limits<double>::quiet_NaN());
+        if (!near_region(region, {x, y, z})) continue;
+        near.push_back(slice.inverse_condition.size() - 1);
+        points.add({x, y, z});
+      }
     const Probe::Answers answers = probe.ask(points);
     for (std::size_t i = 0; i < points.size(); ++i)
-      slice.inverse_condition.push_back(answers.inside(i) && near_region(region, points[i])
-                                            ? answers.inverse_condition[i]
-                                            : std::numeric_limits<double>::quiet_NaN());
+      if (answers.inside(i)) slice.inverse_condition[near[i]] = answers.inverse_condition[i];
     slices.push_back(std::move(slice));
   }
   return slices;
@@ -103,7 +107,7 @@ void certify(Workspace& result, const Machine& machine, const WorkspaceOptions& 
 
 /// Poses that a workspace takes, about: to say how much of the work is done.
 double expected_poses(const Evaluator& evaluator, std::size_t orientations) {
-  constexpr double kClosedForm = 9e6, kGeneral = 1.8e4;
+  constexpr double kClosedForm = 9e6, kGeneral = 8e3;
   return (evaluator.closed_form() ? kClosedForm : kGeneral) *
          static_cast<double>(orientations + 1) / 2;
 }

@@ -86,7 +86,7 @@ std::string cells(const Json& map, const Scale& u, const Scale& v) {
                    right = inside(u, u.nodes[i - 1] + half_u);
       const double top = inside(v, v.nodes[j] + half_v), bottom = inside(v, v.nodes[j] - half_v);
       out +=
-          fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="{}"/>)",
+          fmt::format(R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="{}"/>)",
                       left, top, right - left, bottom - top, fill) +
           "\n";
     }
@@ -176,13 +176,16 @@ std::string legend(const Json& map, double x) {
   std::vector<std::string> told;
   for (const Json& curve : map["curves"]) {
     const std::string kind = curve["kind"];
+    if (std::count(told.begin(), told.end(), kind) > 0) continue;
+    told.push_back(kind);
     std::string about = kind == "direct"    ? "direct singularity (type II)"
                         : kind == "inverse" ? "inverse singularity (type I)"
                                             : kind;
     for (const auto& gain : curve["gained"]) about += "; gains: " + gain.get<std::string>();
     for (const auto& loss : curve["lost"]) about += "; bears: " + loss.get<std::string>();
-    if (std::count(told.begin(), told.end(), about) > 0 || told.size() >= 8) continue;
-    told.push_back(about);
+    const auto same = std::count_if(map["curves"].begin(), map["curves"].end(),
+                                    [&](const Json& other) { return other["kind"] == kind; });
+    if (same > 1) about += fmt::format("; and {} more like it", same - 1);
     out +=
         fmt::format("<path class=\"c {}\" d=\"M{:.1f} {:.1f}h24\"/>\n", color_word(kind), x, y - 4);
     write(about, 32);
