@@ -9,11 +9,17 @@
 namespace polyglide {
 namespace {
 
-constexpr int kMostLayers = 40;         // of the thinned grid
-constexpr double kFinest = 1.0 / 1024;  // of a grid step: where the pattern search stops
-constexpr int kRoughSteps = 12;         // of 10 % each, where poses take long
+constexpr int kMostLayers = 40;             // of the thinned grid
+constexpr double kFinestStep = 1.0 / 1024;  // of a grid step: where the pattern search stops
+constexpr double kReserve = 1 + 2e-4;       // a shape asked for is sought this much larger
+constexpr int kRoughSteps = 12;             // of 10 % each, where poses take long
 constexpr int kSphereStarts = 4;
-constexpr double kReserve = 1 + 2e-4;  // a shape asked for is sought this much larger
+
+/// A search finds the gaps between the places it asks: the last test is finer than they are.
+Shape settle(const Shape& shape, const Shape& centre,
+             const std::function<bool(const Shape&)>& fits) {
+  return shrink(shape, centre, 1 - 5e-5, 200, fits);
+}
 
 }  // namespace
 
@@ -92,7 +98,8 @@ Cylinder Inscriber::largest_cylinder() const {
   goal.fits = cylinder_fits(probe_, kDense);
   shape = shrink(shape, axis_point(shape), 0.9995, 200, goal.fits);
   if (!(shape[4] > 0)) return {};
-  return as_cylinder(climb(shape, grid_.step / 32, grid_.step * kFinest, goal));
+  shape = climb(shape, grid_.step / 32, grid_.step * kFinestStep, goal);
+  return as_cylinder(settle(shape, axis_point(shape), cylinder_fits(probe_, kFinest)));
 }
 
 Cylinder Inscriber::tallest(double diameter, double enough) const {
@@ -124,7 +131,7 @@ Cylinder Inscriber::tallest(double diameter, double enough) const {
   flat[4] = shape[4];
   shape = shrink(shape, flat, 0.999, 200, goal.fits);
   if (2 * shape[4] < diameter || !goal.fits(shape)) return {};
-  return as_cylinder(climb(shape, grid_.step / 32, grid_.step * kFinest, goal));
+  return as_cylinder(climb(shape, grid_.step / 32, grid_.step * kFinestStep, goal));
 }
 
 /// Maximal rectangles of every interval's mask, by a stack over column heights.
@@ -174,14 +181,16 @@ std::optional<Box> Inscriber::best_box(const BoxGain& gain, double enough) const
   goal.fits = box_fits(probe_, kDense);
   shape = shrink(shape, middle_of(shape), 0.9995, 200, goal.fits);
   if (!is_box(shape)) return std::nullopt;
-  return as_box(climb(shape, grid_.step / 32, grid_.step * kFinest, goal));
+  return as_box(climb(shape, grid_.step / 32, grid_.step * kFinestStep, goal));
 }
 
 Box Inscriber::largest_box() const {
   const auto volume = [](const Vector3& size) { return size.prod(); };
   const Box box = best_box(volume, std::numeric_limits<double>::infinity()).value_or(Box{});
-  if (probe_.evaluator().closed_form() || !is_box(as_shape(box))) return box;
   const Shape rough = as_shape(box);
+  if (!is_box(rough)) return box;
+  if (probe_.evaluator().closed_form())
+    return as_box(settle(rough, middle_of(rough), box_fits(probe_, kFinest)));
   const Shape fits = shrink(rough, middle_of(rough), 0.9, kRoughSteps, box_fits(probe_, kRough));
   return is_box(fits) ? as_box(fits) : Box{};
 }
@@ -202,7 +211,8 @@ Shape Inscriber::polish(const GridBall& ball) const {
   goal.fits = sphere_fits(probe_, kDense);
   shape = shrink(shape, centre_of(shape), 0.9995, 200, goal.fits);
   if (!(shape[3] > 0)) return shape;
-  return climb(shape, grid_.step / 32, grid_.step * kFinest, goal);
+  shape = climb(shape, grid_.step / 32, grid_.step * kFinestStep, goal);
+  return settle(shape, centre_of(shape), sphere_fits(probe_, kFinest));
 }
 
 Sphere Inscriber::largest_sphere() const {

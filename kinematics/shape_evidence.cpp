@@ -47,7 +47,7 @@ ShapeEvidence gather(const Probe& probe, const Surface& surface, double half, do
 }
 
 const Density& density_for(const Probe& probe) {
-  return probe.evaluator().closed_form() ? kDense : kRough;
+  return probe.evaluator().closed_form() ? kFinest : kRough;
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ struct Density {
   int places;                 ///< of a sphere
 };
 inline constexpr Density kRough{12, 3, 1, 2, 32}, kCoarse{40, 6, 3, 6, 200},
-    kDense{120, 16, 6, 20, 2400};
+    kDense{120, 16, 6, 20, 2400}, kFinest{480, 64, 24, 80, 40000};
 
 /// Places on the surface of a shape, those that fail first before the rest.
 using Surface = std::function<std::vector<Points>(const Shape&)>;
