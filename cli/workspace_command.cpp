@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <iostream>
+#include <optional>
 
 #include "catalog/json_file.hpp"
 #include "cli/commands.hpp"
@@ -51,7 +52,8 @@ PoseRegion read_region(const std::string& text, const Units& units) {
 struct Asked {
   WorkspaceOptions how;
   std::string box, cylinder, turned, orientations_at, map, file;
-  double total = -1, torsion = 0;  ///< file units; total < 0: not asked for
+  std::optional<double> total;  ///< file units, as torsion
+  double torsion = 0;
   bool certify = false;
   double tilt = 0, condition = 0;
 };
@@ -173,13 +175,13 @@ WorkspaceOptions options_for(const Asked& asked, const Machine& machine) {
     for (int i = 0; i < 3; ++i) coordinates[3 + i] = angles[i] * units.radians;
     how.rotation = pose_of(coordinates).rotation;
   }
-  if (asked.total >= 0) {
-    how.orientations = {asked.total * units.radians, asked.torsion * units.radians};
+  if (asked.total) {
+    how.orientations = {*asked.total * units.radians, asked.torsion * units.radians};
     const double most = greatest_tilt(machine.task);
     if (rotations_of(machine.task).empty() || !(how.orientations->tilt <= most) ||
         !(how.orientations->torsion <= M_PI))
       throw InputError({wrong_argument(
-          fmt::format("{}", asked.total),
+          fmt::format("{}", *asked.total),
           fmt::format(
               "--total-orientation takes tilts up to {} and torsions up to 180° of a machine "
               "that commands rotations; {} commands {}",
@@ -198,6 +200,18 @@ ordered_json measure(const ChosenMachine& chosen, const Asked& asked, CommandLin
   ordered_json document = to_json(workspace);
   document["name"] = chosen.mechanism.name;
   return document;
+}
+
+/// CLI::Range lets through what is no number.
+CLI::Validator between(double least, double most) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && value >= least && value <= most
+                   ? std::string()
+                   : fmt::format("\"{}\" is no number from {:g} to {:g}", text, least, most);
+      },
+      fmt::format("{:g} to {:g}", least, most));
 }
 
 /// A limit that is ignored by a name that no limit has is most likely misspelt.
@@ -229,17 +243,17 @@ int run_workspace(CommandLine& line) {
   auto* turned = app.add_option("--turned", asked.turned,
                                 "Orientation a,b,c of the platform (default: as at home)");
   app.add_option("--accuracy", asked.how.accuracy, "Relative accuracy of the volume")
-      ->check(CLI::Range(1e-5, 0.1));
+      ->check(between(1e-5, 0.1));
   auto* total =
       app.add_option("--total-orientation,--dexterous", asked.total,
                      "Only places where every tilt up to this angle, in every direction that the "
                      "machine commands, can be had (file units)")
-          ->check(CLI::NonNegativeNumber)
+          ->check(between(0, 360))
           ->excludes(turned);
   app.add_option("--torsion", asked.torsion,
                  "With --total-orientation: and every torsion up to this angle either way")
       ->needs(total)
-      ->check(CLI::NonNegativeNumber);
+      ->check(between(0, 360));
   auto* at = app.add_option("--orientations-at", asked.orientations_at,
                             "Instead: the rotations that can be had with the tool at x,y,z")
                  ->excludes(total);
@@ -256,10 +270,10 @@ int run_workspace(CommandLine& line) {
   app.add_option("--tilt", asked.tilt,
                  "With --certify: tilt to either side about every commanded rotation (file units)")
       ->needs(certify_flag)
-      ->check(CLI::NonNegativeNumber);
+      ->check(between(0, 360));
   app.add_option("--condition", asked.condition, "With --certify: largest condition number allowed")
       ->needs(certify_flag)
-      ->check(CLI::Range(1.0, 1e12));
+      ->check(between(1, 1e12));
   if (!line.parse()) return kDone;
   if (asked.certify && asked.box.empty())
     throw InputError({wrong_argument("", "--certify needs --box DX,DY,DZ[@X,Y,Z]")});
@@ -271,10 +285,10 @@ int run_workspace(CommandLine& line) {
   for (const ChosenMachine& chosen : machines) {
     if (!asked.how.ignored.empty() && !line.quiet())
       remark_unknown(asked.how.ignored, prepare(chosen.mechanism));
-    documents.push_back(asked.certify                    ? certify(chosen, asked, line.json())
-                        : !asked.orientations_at.empty() ? orientations(chosen, asked, line)
-                        : !asked.map.empty()             ? singularities(chosen, asked, line)
-                                                         : measure(chosen, asked, line));
+    documents.push_back(asked.certify      ? certify(chosen, asked, line.json())
+                        : at->count() > 0  ? orientations(chosen, asked, line)
+                        : map->count() > 0 ? singularities(chosen, asked, line)
+                                           : measure(chosen, asked, line));
   }
   if (line.json()) print_json(one_or_all(std::move(documents)));
   return kDone;

@@ -36,10 +36,9 @@ std::string headline(const Workspace& workspace) {
                        workspace.area * 1e4);
   if (workspace.length > 0)
     return fmt::format("{} {} long, positions from home", what, in_mm(workspace.length));
-  return fmt::format("{} empty: {}", what,
-                     workspace.limits_hit.empty() && workspace.poses < 10
-                         ? "no translation is commanded, or home is out of reach"
-                         : "no place is reachable and regular");
+  if (!workspace.stopped_by.empty())
+    return fmt::format("{} empty: home is stopped by {}", what, workspace.stopped_by);
+  return fmt::format("{} is one place: the machine commands no translation", what);
 }
 
 void add_shape(const char* label, const std::string& shape, const ShapeEvidence& evidence,

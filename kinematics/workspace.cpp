@@ -147,6 +147,13 @@ OrientationSamples compare_samples(const Evaluator& evaluator, const WorkspaceOp
   return samples;
 }
 
+std::string limit_at_home(const Probe& probe) {
+  Points home;
+  home.add(Vector3::Zero());
+  const int limit = probe.ask(home).limit[0];
+  return limit < 0 ? "" : probe.names()[limit];
+}
+
 /// The largest shapes inside, and why they are believed to be.
 void inscribe(Workspace& result, const Probe& probe, const Inscriber& inscriber) {
   tbb::parallel_invoke([&] { result.cylinders = inscriber.tallest_cylinders(); },
@@ -196,6 +203,7 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
     if (options.cylinder)
       result.asked_cylinder = inscriber.place(options.cylinder->first, options.cylinder->second);
   }
+  if (region.empty) result.stopped_by = limit_at_home(probe);
   result.poses = probe.poses();
   if (!one) {
     const double size = result.volume + result.area + result.length;  // two of them are zero

@@ -61,6 +61,7 @@ struct Workspace {
   std::vector<Cylinder> cylinders;  ///< largest height for a series of diameters
   double global_conditioning = 0, worst = 0, best = 0;  ///< mean, least and greatest 1/κ
   double characteristic_length = 0;
+  std::string stopped_by;  ///< what stops home in this orientation where the workspace is empty
   std::map<std::string, double> limits_hit;  ///< share of the boundary each limit makes
   std::vector<Slice> slices;
   using RotationRange = polyglide::RotationRange;

@@ -106,6 +106,7 @@ Json to_json(const Workspace& workspace) {
                               {"max", range->max},
                               {"min_limit", range->min_limit},
                               {"max_limit", range->max_limit}};
+  if (!workspace.stopped_by.empty()) json["stopped_by"] = workspace.stopped_by;
   json["limits_hit"] = workspace.limits_hit;
   json["slices"] = Json::array();
   for (const Slice& slice : workspace.slices) json["slices"].push_back(json_of(slice));
