@@ -1,61 +1,21 @@
 #include <fmt/format.h>
 
 #include <iostream>
+#include <optional>
 
+#include "catalog/json_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/machines.hpp"
 #include "cli/print.hpp"
-#include "kinematics/certify.hpp"
-#include "kinematics/workspace.hpp"
+#include "cli/progress.hpp"
+#include "cli/singularities.hpp"
+#include "cli/workspace_page.hpp"
+#include "report/map_picture.hpp"
 
 namespace polyglide {
 namespace {
 
-std::string litres(double cubic_metres) { return fmt::format("{:.4g} dm³", cubic_metres * 1e3); }
-
-std::string cylinder_text(const Cylinder& cylinder) {
-  return fmt::format("Ø{} × {} about {}", in_mm(cylinder.diameter), in_mm(cylinder.height),
-                     point_in_mm(cylinder.center));
-}
-
-std::string box_text(const Box& box) {
-  return fmt::format("{} about {}", size_in_mm(box.size), point_in_mm(box.center));
-}
-
-void print_page(const Workspace& workspace, const WorkspaceOptions& how, const std::string& name) {
-  std::cout << fmt::format("{}: workspace {} ({} between {} and {}), positions from home\n", name,
-                           litres(workspace.volume), workspace.certified ? "proved" : "estimated",
-                           litres(workspace.volume_lower), litres(workspace.volume_upper));
-  std::vector<std::vector<std::string>> rows{
-      {"  extent",
-       fmt::format("{} to {}", point_in_mm(workspace.lower), point_in_mm(workspace.upper))},
-      {"  largest cylinder", cylinder_text(workspace.inscribed_cylinder)},
-      {"  largest box", box_text(workspace.inscribed_box)}};
-  for (const Cylinder& cylinder : workspace.cylinders)
-    rows.push_back({"  cylinder", cylinder_text(cylinder)});
-  if (how.box)
-    rows.push_back({"  asked box", workspace.asked_box ? "fits: " + box_text(*workspace.asked_box)
-                                                       : "does not fit"});
-  if (how.cylinder)
-    rows.push_back({"  asked cylinder", workspace.asked_cylinder
-                                            ? "fits: " + cylinder_text(*workspace.asked_cylinder)
-                                            : "does not fit"});
-  rows.push_back(
-      {"  conditioning 1/κ",
-       fmt::format("mean {:.3f} (GCI), worst {:.3f}, best {:.3f}; characteristic length {}",
-                   workspace.global_conditioning, workspace.worst, workspace.best,
-                   in_mm(workspace.characteristic_length))});
-  if (workspace.rotation_range)
-    rows.push_back({fmt::format("  widest turn {}", workspace.rotation_range->axis),
-                    fmt::format("{} to {} at {}", in_degrees(workspace.rotation_range->min),
-                                in_degrees(workspace.rotation_range->max),
-                                point_in_mm(workspace.rotation_range->at))});
-  for (const auto& [limit, share] : workspace.limits_hit)
-    rows.push_back({"  bounded by", fmt::format("{:.1f} % {}", 100 * share, limit)});
-  rows.push_back(
-      {"  effort", fmt::format("{} poses in {:.2f} s", workspace.poses, workspace.seconds)});
-  std::cout << columns(rows);
-}
+using nlohmann::ordered_json;
 
 /// "AxBxC" or "A,B,C" in file units to metres.
 std::vector<double> read_size(std::string text, const char* option, std::size_t count,
@@ -88,110 +48,247 @@ PoseRegion read_region(const std::string& text, const Units& units) {
   return region;
 }
 
-void print_certificate(const BoxCertificate& certificate, const std::string& name) {
-  const char* word = certificate.verdict == CertifyVerdict::certified ? "certified"
-                     : certificate.verdict == CertifyVerdict::fails   ? "fails"
-                                                                      : "undecided";
-  std::cout << fmt::format("{}: {}: {}\n", name, word, certificate.reason);
-  std::vector<std::vector<std::string>> rows;
-  if (certificate.at) {
-    const auto c = coordinates_of(*certificate.at);
-    rows.push_back({certificate.verdict == CertifyVerdict::fails ? "  at" : "  open about",
-                    fmt::format("{}, turned A {} B {} C {}", point_in_mm(certificate.at->position),
-                                in_degrees(c[3]), in_degrees(c[4]), in_degrees(c[5]))});
-  }
-  rows.push_back({"  proved", fmt::format("{:.4g} % of the box", 100 * certificate.proved)});
-  if (certificate.worst_condition > 0)
-    rows.push_back(
-        {"  condition", fmt::format("κ at most {:.4g} where proved", certificate.worst_condition)});
-  rows.push_back(
-      {"  effort", fmt::format("{} boxes in {:.2f} s", certificate.boxes, certificate.seconds)});
-  std::cout << columns(rows);
-}
-
-/// What `--certify` asks beside the box.
-struct CertifyOptions {
-  bool wanted = false;
+/// Everything the command was given, as typed.
+struct Asked {
+  WorkspaceOptions how;
+  std::string box, cylinder, turned, orientations_at, map, file;
+  std::optional<double> total;  ///< file units, as torsion
+  double torsion = 0;
+  bool certify = false;
   double tilt = 0, condition = 0;
 };
 
-nlohmann::ordered_json certify(const ChosenMachine& chosen, const CertifyOptions& options,
-                               const std::string& box, const std::vector<std::string>& ignored,
-                               bool json) {
-  PoseRegion region = read_region(box, chosen.mechanism.units);
-  region.tilt = options.tilt * chosen.mechanism.units.radians;
-  region.condition = options.condition;
+std::function<void(double, double)> shown_on(Progress& progress) {
+  return [&progress](double done, double total) { progress.update(done, total); };
+}
+
+ordered_json certify(const ChosenMachine& chosen, const Asked& asked, bool json) {
+  PoseRegion region = read_region(asked.box, chosen.mechanism.units);
+  region.tilt = asked.tilt * chosen.mechanism.units.radians;
+  region.condition = asked.condition;
   if (region.tilt > M_PI / 2)
-    throw InputError({wrong_argument(fmt::format("{}", options.tilt),
+    throw InputError({wrong_argument(fmt::format("{}", asked.tilt),
                                      "--tilt takes an angle up to 90 degrees, in file units")});
-  const BoxCertificate certificate = certify_box(prepare(chosen.mechanism), region, ignored);
-  nlohmann::ordered_json document{{"name", chosen.mechanism.name}};
+  const BoxCertificate certificate =
+      certify_box(prepare(chosen.mechanism), region, asked.how.ignored);
+  ordered_json document{{"name", chosen.mechanism.name}};
   document.update(to_json(certificate));
-  if (!json) print_certificate(certificate, chosen.mechanism.name);
+  if (!json) print_page(certificate, chosen.mechanism.name);
   return document;
+}
+
+std::string axes_text(const std::vector<int>& axes) {
+  std::string text;
+  for (int axis : axes) text += "XYZABC"[axis];
+  return text.empty() ? "none" : text;
+}
+
+ordered_json orientations(const ChosenMachine& chosen, const Asked& asked, CommandLine& line) {
+  const auto place = parse_numbers(asked.orientations_at, "--orientations-at");
+  if (place.size() != 3)
+    throw InputError({wrong_argument(asked.orientations_at, "--orientations-at takes x,y,z")});
+  const Machine machine = prepare(chosen.mechanism);
+  if (rotations_of(machine.task).empty())
+    throw InputError({wrong_argument(
+        chosen.mechanism.name,
+        fmt::format(
+            "--orientations-at is for machines that command a rotation; this one commands {}",
+            axes_text(machine.task.axes)))});
+  Progress progress("orientations of " + chosen.mechanism.name, line.quiet());
+  OrientationOptions options{asked.how.ignored,
+                             Vector3(place[0], place[1], place[2]) * chosen.mechanism.units.metres,
+                             shown_on(progress)};
+  const OrientationWorkspace workspace = orientation_workspace(machine, options);
+  ordered_json document{{"name", chosen.mechanism.name},
+                        {"at", {options.at.x(), options.at.y(), options.at.z()}}};
+  document.update(to_json(workspace));
+  if (!line.json()) print_page(workspace, options.at, chosen.mechanism.name);
+  return document;
+}
+
+/// "xy", "xz@0,10,0", "ab@0,0,-20" or "z=-20" (XY at that height): axes and where the others stay.
+SingularityMapOptions read_slice(const std::string& text, const Units& units) {
+  constexpr const char* kRule =
+      "--singularity-map takes two of x y z a b c, as in xy, xz@0,10,0 or ab@0,0,-20, or a height, "
+      "as in z=-20";
+  SingularityMapOptions options;
+  if (text.starts_with("z=")) {
+    const auto height = parse_numbers(text.substr(2), "--singularity-map z=");
+    if (height.size() != 1) throw InputError({wrong_argument(text, kRule)});
+    options.at[2] = height[0] * units.metres;
+    return options;
+  }
+  const std::size_t mark = text.find('@');
+  const std::string axes = text.substr(0, mark);
+  if (axes.size() != 2) throw InputError({wrong_argument(text, kRule)});
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::size_t axis = std::string_view("xyzabcXYZABC").find(axes[k]);
+    if (axis == std::string_view::npos) throw InputError({wrong_argument(text, kRule)});
+    options.axes[k] = static_cast<int>(axis % 6);
+  }
+  if (mark != std::string::npos)
+    options.at = coordinates_of(read_pose(text.substr(mark + 1), "--singularity-map …@", units));
+  return options;
+}
+
+ordered_json singularities(const ChosenMachine& chosen, const Asked& asked, CommandLine& line) {
+  SingularityMapOptions options = read_slice(asked.map, chosen.mechanism.units);
+  options.ignored = asked.how.ignored;
+  const Machine machine = prepare(chosen.mechanism);
+  const auto& axes = machine.task.axes;
+  for (int axis : options.axes)
+    if (std::count(axes.begin(), axes.end(), axis) == 0 || options.axes[0] == options.axes[1])
+      throw InputError({wrong_argument(
+          asked.map, fmt::format("--singularity-map takes two different axes of those that {} "
+                                 "commands: {}",
+                                 chosen.mechanism.name, axes_text(axes)))});
+  Progress progress("singularities of " + chosen.mechanism.name, line.quiet());
+  options.progress = shown_on(progress);
+  const SingularityMap map = singularity_map(machine, options);
+  ordered_json document{{"name", chosen.mechanism.name}};
+  document.update(to_json(map));
+  if (!line.json()) print_page(map, chosen.mechanism.name);
+  if (!asked.file.empty()) {
+    write_atomically(asked.file, map_svg(document));
+    if (!line.quiet()) std::cerr << "wrote " << asked.file << "\n";
+  }
+  return document;
+}
+
+/// Options in SI for one machine.
+WorkspaceOptions options_for(const Asked& asked, const Machine& machine) {
+  const Units& units = machine.model.mechanism.units;
+  WorkspaceOptions how = asked.how;
+  if (!asked.box.empty()) {
+    const auto size = read_size(asked.box, "--box", 3, units);
+    how.box = Vector3(size[0], size[1], size[2]);
+  }
+  if (!asked.cylinder.empty()) {
+    const auto size = read_size(asked.cylinder, "--cylinder", 2, units);
+    how.cylinder = {size[0], size[1]};
+  }
+  if (!asked.turned.empty()) {
+    const auto angles = parse_numbers(asked.turned, "--turned");
+    if (angles.size() != 3)
+      throw InputError({wrong_argument(asked.turned, "--turned takes three angles a,b,c")});
+    Eigen::Matrix<double, 6, 1> coordinates = Eigen::Matrix<double, 6, 1>::Zero();
+    for (int i = 0; i < 3; ++i) coordinates[3 + i] = angles[i] * units.radians;
+    how.rotation = pose_of(coordinates).rotation;
+  }
+  if (asked.total) {
+    how.orientations = {*asked.total * units.radians, asked.torsion * units.radians};
+    const double most = greatest_tilt(machine.task);
+    if (rotations_of(machine.task).empty() || !(how.orientations->tilt <= most) ||
+        !(how.orientations->torsion <= M_PI))
+      throw InputError({wrong_argument(
+          fmt::format("{}", *asked.total),
+          fmt::format(
+              "--total-orientation takes tilts up to {} and torsions up to 180° of a machine "
+              "that commands rotations; {} commands {}",
+              in_degrees(most), machine.model.mechanism.name, axes_text(machine.task.axes)))});
+  }
+  return how;
+}
+
+ordered_json measure(const ChosenMachine& chosen, const Asked& asked, CommandLine& line) {
+  const Machine machine = prepare(chosen.mechanism);
+  WorkspaceOptions how = options_for(asked, machine);
+  Progress progress("workspace of " + chosen.mechanism.name, line.quiet());
+  how.progress = shown_on(progress);
+  const Workspace workspace = compute_workspace(machine, how);
+  if (!line.json()) print_page(workspace, how, chosen.mechanism.name);
+  ordered_json document = to_json(workspace);
+  document["name"] = chosen.mechanism.name;
+  return document;
+}
+
+/// CLI::Range lets through what is no number.
+CLI::Validator between(double least, double most) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && value >= least && value <= most
+                   ? std::string()
+                   : fmt::format("\"{}\" is no number from {:g} to {:g}", text, least, most);
+      },
+      fmt::format("{:g} to {:g}", least, most));
+}
+
+/// A limit that is ignored by a name that no limit has is most likely misspelt.
+void remark_unknown(const std::vector<std::string>& ignored, const Machine& machine) {
+  for (const std::string& word : ignored) {
+    const std::vector<std::string> names = Evaluator(machine).limit_names();
+    const bool known = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return name == word || name.substr(0, name.find(' ')) == word;
+    });
+    if (!known)
+      std::cerr << fmt::format("{} has no limit {}: {} is not ignored\n",
+                               machine.model.mechanism.name, word, word);
+  }
 }
 
 }  // namespace
 
 int run_workspace(CommandLine& line) {
   MachineOptions options;
-  WorkspaceOptions how;
-  std::string box, cylinder, turned;
+  Asked asked;
   add_machine_options(line.options(), options);
   auto& app = line.options();
-  app.add_option("--ignore-limits", how.ignored, "Limits that do not count, separated by commas")
+  app.add_option("--ignore-limits", asked.how.ignored,
+                 "Limits that do not count, separated by commas")
       ->delimiter(',');
-  app.add_option("--box", box, "Does a box of this size fit, as in 200x200x100 (file units)");
-  app.add_option("--cylinder", cylinder,
+  app.add_option("--box", asked.box, "Does a box of this size fit, as in 200x200x100 (file units)");
+  app.add_option("--cylinder", asked.cylinder,
                  "Does a cylinder diameter x height fit, as in 230x170 (file units)");
-  app.add_option("--turned", turned, "Orientation a,b,c of the platform (default: as at home)");
-  app.add_option("--accuracy", how.accuracy, "Relative accuracy of the volume")
-      ->check(CLI::Range(1e-12, 0.1));
-  CertifyOptions certified;
-  auto* certify_flag = app.add_flag("--certify", certified.wanted,
+  auto* turned = app.add_option("--turned", asked.turned,
+                                "Orientation a,b,c of the platform (default: as at home)");
+  app.add_option("--accuracy", asked.how.accuracy, "Relative accuracy of the volume")
+      ->check(between(1e-12, 0.1));
+  auto* total =
+      app.add_option("--total-orientation,--dexterous", asked.total,
+                     "Only places where every tilt up to this angle, in every direction that the "
+                     "machine commands, can be had (file units)")
+          ->check(between(0, 360))
+          ->excludes(turned);
+  app.add_option("--torsion", asked.torsion,
+                 "With --total-orientation: and every torsion up to this angle either way")
+      ->needs(total)
+      ->check(between(0, 360));
+  auto* at = app.add_option("--orientations-at", asked.orientations_at,
+                            "Instead: the rotations that can be had with the tool at x,y,z")
+                 ->excludes(total);
+  auto* map = app.add_option("--singularity-map", asked.map,
+                             "Instead: singularities over a slice, as in xy, z=-20, ab@0,0,-20")
+                  ->excludes(total)
+                  ->excludes(at);
+  app.add_option("-o,--output", asked.file, "With --singularity-map: draw it in this SVG file")
+      ->needs(map)
+      ->type_name("FILE");
+  auto* certify_flag = app.add_flag("--certify", asked.certify,
                                     "Prove that the whole --box DX,DY,DZ[@X,Y,Z] can be used");
-  app.add_option("--tilt", certified.tilt,
+  certify_flag->excludes(total)->excludes(at)->excludes(map);
+  app.add_option("--tilt", asked.tilt,
                  "With --certify: tilt to either side about every commanded rotation (file units)")
       ->needs(certify_flag)
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--condition", certified.condition,
-                 "With --certify: largest condition number allowed")
+      ->check(between(0, 360));
+  app.add_option("--condition", asked.condition, "With --certify: largest condition number allowed")
       ->needs(certify_flag)
-      ->check(CLI::Range(1.0, 1e12));
+      ->check(between(1, 1e12));
   if (!line.parse()) return kDone;
-  if (certified.wanted && box.empty())
+  if (asked.certify && asked.box.empty())
     throw InputError({wrong_argument("", "--certify needs --box DX,DY,DZ[@X,Y,Z]")});
 
-  std::vector<nlohmann::ordered_json> documents;
-  for (const ChosenMachine& chosen : load_machines(options)) {
-    const Units& units = chosen.mechanism.units;
-    if (certified.wanted) {
-      documents.push_back(certify(chosen, certified, box, how.ignored, line.json()));
-      continue;
-    }
-    if (!box.empty()) {
-      const auto size = read_size(box, "--box", 3, units);
-      how.box = Vector3(size[0], size[1], size[2]);
-    }
-    if (!cylinder.empty()) {
-      const auto size = read_size(cylinder, "--cylinder", 2, units);
-      how.cylinder = {size[0], size[1]};
-    }
-    if (!turned.empty()) {
-      const auto angles = parse_numbers(turned, "--turned");
-      if (angles.size() != 3)
-        throw InputError({wrong_argument(turned, "--turned takes three angles a,b,c")});
-      Eigen::Matrix<double, 6, 1> coordinates = Eigen::Matrix<double, 6, 1>::Zero();
-      for (int i = 0; i < 3; ++i) coordinates[3 + i] = angles[i] * units.radians;
-      how.rotation = pose_of(coordinates).rotation;
-    }
-    const Workspace workspace = compute_workspace(prepare(chosen.mechanism), how);
-    if (line.json()) {
-      documents.push_back(to_json(workspace));
-      documents.back()["name"] = chosen.mechanism.name;
-    } else {
-      print_page(workspace, how, chosen.mechanism.name);
-    }
+  const std::vector<ChosenMachine> machines = load_machines(options);
+  if (!asked.file.empty() && machines.size() > 1)
+    throw InputError({wrong_argument(asked.file, "-o draws one machine at a time")});
+  std::vector<ordered_json> documents;
+  for (const ChosenMachine& chosen : machines) {
+    if (!asked.how.ignored.empty() && !line.quiet())
+      remark_unknown(asked.how.ignored, prepare(chosen.mechanism));
+    documents.push_back(asked.certify      ? certify(chosen, asked, line.json())
+                        : at->count() > 0  ? orientations(chosen, asked, line)
+                        : map->count() > 0 ? singularities(chosen, asked, line)
+                                           : measure(chosen, asked, line));
   }
   if (line.json()) print_json(one_or_all(std::move(documents)));
   return kDone;

@@ -62,7 +62,7 @@ void measure_by_quadrature(Workspace& workspace, const Probe& probe, const Regio
   ExactSearch search;
   search.tolerance = std::min(1e-6, options.accuracy);
   const bool flat = limits->dimensions() == 2;
-  double& size = flat ? workspace.area.emplace(workspace.area.value_or(0)) : workspace.volume;
+  double& size = flat ? workspace.area : workspace.volume;
   if (region.empty) {
     // Limits hold at home, and yet nothing is inside: singular everywhere, or next to it.
     if (!limits->inside(Vector3::Zero())) return;

@@ -9,9 +9,17 @@
 namespace polyglide {
 namespace {
 
-constexpr int kMostLayers = 40;         // of the thinned grid
-constexpr double kFinest = 1.0 / 1024;  // of a grid step: where the pattern search stops
-constexpr double kReserve = 1 + 2e-4;   // a shape asked for is sought this much larger
+constexpr int kMostLayers = 40;             // of the thinned grid
+constexpr double kFinestStep = 1.0 / 1024;  // of a grid step: where the pattern search stops
+constexpr double kReserve = 1 + 2e-4;       // a shape asked for is sought this much larger
+constexpr int kRoughSteps = 12;             // of 10 % each, where poses take long
+constexpr int kSphereStarts = 4;
+
+/// A search finds the gaps between the places it asks: the last test is finer than they are.
+Shape settle(const Shape& shape, const Shape& centre,
+             const std::function<bool(const Shape&)>& fits) {
+  return shrink(shape, centre, 1 - 5e-5, 200, fits);
+}
 
 }  // namespace
 
@@ -72,7 +80,11 @@ Cylinder Inscriber::largest_cylinder() const {
   const Interval* start = best_interval(volume);
   if (!start) return {};
   const Cylinder seed = grid_cylinder(*start);
-  if (!probe_.evaluator().closed_form()) return seed;
+  if (!probe_.evaluator().closed_form()) {
+    const Shape rough = as_shape(seed), axis = axis_point(rough);
+    const Shape fits = shrink(rough, axis, 0.9, kRoughSteps, cylinder_fits(probe_, kRough));
+    return fits[4] > 0 ? as_cylinder(fits) : Cylinder{};
+  }
   ShapeGoal goal;
   goal.moves = volume_moves();
   goal.free = {0, 1, 2, 3, 4};
@@ -86,7 +98,8 @@ Cylinder Inscriber::largest_cylinder() const {
   goal.fits = cylinder_fits(probe_, kDense);
   shape = shrink(shape, axis_point(shape), 0.9995, 200, goal.fits);
   if (!(shape[4] > 0)) return {};
-  return as_cylinder(climb(shape, grid_.step / 32, grid_.step * kFinest, goal));
+  shape = climb(shape, grid_.step / 32, grid_.step * kFinestStep, goal);
+  return as_cylinder(settle(shape, axis_point(shape), cylinder_fits(probe_, kFinest)));
 }
 
 Cylinder Inscriber::tallest(double diameter, double enough) const {
@@ -118,7 +131,7 @@ Cylinder Inscriber::tallest(double diameter, double enough) const {
   flat[4] = shape[4];
   shape = shrink(shape, flat, 0.999, 200, goal.fits);
   if (2 * shape[4] < diameter || !goal.fits(shape)) return {};
-  return as_cylinder(climb(shape, grid_.step / 32, grid_.step * kFinest, goal));
+  return as_cylinder(climb(shape, grid_.step / 32, grid_.step * kFinestStep, goal));
 }
 
 /// Maximal rectangles of every interval's mask, by a stack over column heights.
@@ -168,12 +181,50 @@ std::optional<Box> Inscriber::best_box(const BoxGain& gain, double enough) const
   goal.fits = box_fits(probe_, kDense);
   shape = shrink(shape, middle_of(shape), 0.9995, 200, goal.fits);
   if (!is_box(shape)) return std::nullopt;
-  return as_box(climb(shape, grid_.step / 32, grid_.step * kFinest, goal));
+  return as_box(climb(shape, grid_.step / 32, grid_.step * kFinestStep, goal));
 }
 
 Box Inscriber::largest_box() const {
   const auto volume = [](const Vector3& size) { return size.prod(); };
-  return best_box(volume, std::numeric_limits<double>::infinity()).value_or(Box{});
+  const Box box = best_box(volume, std::numeric_limits<double>::infinity()).value_or(Box{});
+  const Shape rough = as_shape(box);
+  if (!is_box(rough)) return box;
+  if (probe_.evaluator().closed_form())
+    return as_box(settle(rough, middle_of(rough), box_fits(probe_, kFinest)));
+  const Shape fits = shrink(rough, middle_of(rough), 0.9, kRoughSteps, box_fits(probe_, kRough));
+  return is_box(fits) ? as_box(fits) : Box{};
+}
+
+/// The largest sphere that a search from a ball of the grid leads to; radius 0 for none.
+Shape Inscriber::polish(const GridBall& ball) const {
+  const Vector3 centre = grid_.at(ball.at[0], ball.at[1], ball.at[2]);
+  Shape shape = as_shape(Sphere{2 * std::max(ball.radius - 1, 0.25) * grid_.step, centre});
+  if (!probe_.evaluator().closed_form())
+    return shrink(shape, centre_of(shape), 0.9, kRoughSteps, sphere_fits(probe_, kRough));
+  ShapeGoal goal;
+  goal.moves = sphere_moves();
+  goal.free = {0, 1, 2, 3};
+  goal.fits = sphere_fits(probe_, kCoarse);
+  goal.gain = [](const Shape& s) { return s[3]; };
+  shape = shrink(shape, centre_of(shape), 0.9, 60, goal.fits);
+  shape = climb(shape, grid_.step, grid_.step / 64, goal);
+  goal.fits = sphere_fits(probe_, kDense);
+  shape = shrink(shape, centre_of(shape), 0.9995, 200, goal.fits);
+  if (!(shape[3] > 0)) return shape;
+  shape = climb(shape, grid_.step / 32, grid_.step * kFinestStep, goal);
+  return settle(shape, centre_of(shape), sphere_fits(probe_, kFinest));
+}
+
+Sphere Inscriber::largest_sphere() const {
+  if (inside_.empty()) return {};
+  Shape best = as_shape(Sphere{});
+  for (const GridBall& ball : largest_balls(inside_, grid_.count, kSphereStarts)) {
+    // No sphere about a place near this node is larger than the way to the node outside, and a
+    // cell.
+    if ((ball.radius + 1) * grid_.step < best[3]) break;
+    if (const Shape shape = polish(ball); shape[3] > best[3]) best = shape;
+  }
+  return best[3] > 0 ? as_sphere(best) : Sphere{};
 }
 
 std::optional<Cylinder> Inscriber::place(double diameter, double height) const {

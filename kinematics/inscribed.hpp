@@ -16,7 +16,9 @@ namespace polyglide {
 /// intersection found. The best of all is then improved by pattern search over
 /// exact poses on its surface, and shrunk until a dense set of them is inside. A
 /// hole smaller than a grid step inside a shape is not seen.
-/// Machines without closed form keep the shape that the grid shows. A machine
+/// Spheres start from the largest balls of the grid (distance transform), and the best is kept.
+/// Machines without closed form keep the shape that the grid shows, shrunk until a rough
+/// test of its surface passes. A machine
 /// without three translations, or an empty region, has no shapes.
 class Inscriber {
  public:
@@ -26,6 +28,7 @@ class Inscriber {
   /// Largest volume; zero when there is none.
   [[nodiscard]] Cylinder largest_cylinder() const;
   [[nodiscard]] Box largest_box() const;
+  [[nodiscard]] Sphere largest_sphere() const;
 
   /// The tallest cylinder for a round series of diameters, up to the widest that fits.
   [[nodiscard]] std::vector<Cylinder> tallest_cylinders() const;
@@ -47,6 +50,7 @@ class Inscriber {
   void add_intervals();
   [[nodiscard]] const Interval* best_interval(const CylinderGain& gain) const;
   [[nodiscard]] Cylinder grid_cylinder(const Interval& interval) const;
+  [[nodiscard]] Shape polish(const GridBall& ball) const;
   [[nodiscard]] Cylinder tallest(double diameter, double enough) const;
   [[nodiscard]] std::optional<Box> best_box(const BoxGain& gain, double enough) const;
   [[nodiscard]] std::optional<Box> best_rectangle(const BoxGain& gain) const;

@@ -56,6 +56,7 @@ std::optional<LineLimits> LineLimits::make(const Machine& machine,
                                            const std::vector<std::string>& ignored,
                                            const Eigen::Quaterniond& rotation, const Bounds& box) {
   if (!machine.legs || !machine.task.pure || machine.task.translations < 2) return std::nullopt;
+  if (!late_limit_names(machine.model.mechanism, ignored).empty()) return std::nullopt;
   LineLimits result;
   result.dimensions_ = machine.task.translations;
   result.size_ = machine.model.size;

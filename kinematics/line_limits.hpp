@@ -22,7 +22,7 @@ struct Span {
 class LineLimits {
  public:
   /// nullopt for machines without closed form; whose rods must agree about a carriage; with cones
-  /// on cranks; or with fewer than two translations.
+  /// on cranks, clearances or expressions; or with fewer than two translations.
   /// @param box limits everything: search_bounds().
   [[nodiscard]] static std::optional<LineLimits> make(const Machine& machine,
                                                       const std::vector<std::string>& ignored,

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <atomic>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kinematics/evaluate.hpp"
@@ -21,13 +23,19 @@ struct Points {
   [[nodiscard]] Vector3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 
-/// Asks an evaluator about tool places at one orientation, and counts; asking is
-/// safe from several threads. A place
+/// Told how many poses were asked so far, from the thread that asks.
+using PoseCounter = std::function<void(std::size_t poses)>;
+
+/// Asks an evaluator about tool places at one orientation or at all of a set, and counts; asking
+/// is safe from several threads. A place
 /// belongs to the workspace when no limit stops it and no singular surface
 /// separates it from home: for square J the sign of det J is home's, and 1/κ > 1e-6.
 class Probe {
  public:
   Probe(const Evaluator& evaluator, const Eigen::Quaterniond& rotation);
+  /// A place belongs to the workspace when it does at every one of these orientations, of which
+  /// there is at least one; its 1/κ is the least of them. Those that stop most come best first.
+  Probe(const Evaluator& evaluator, std::vector<Eigen::Quaterniond> rotations);
 
   struct Answers {
     std::vector<int> limit;                 ///< -1 inside, else index into names()
@@ -36,6 +44,8 @@ class Probe {
     [[nodiscard]] bool inside(std::size_t i) const { return limit[i] < 0; }
   };
   [[nodiscard]] Answers ask(const Points& points, bool conditioning = true) const;
+  /// The same for poses with orientations of their own.
+  [[nodiscard]] Answers ask(PoseBatch poses, bool conditioning = true) const;
   [[nodiscard]] bool all_inside(const Points& points) const;
 
   /// Limit names of the evaluator, then "singularity" and "search box".
@@ -48,15 +58,22 @@ class Probe {
   void set_side(int side) { side_ = side; }
 
   [[nodiscard]] const Evaluator& evaluator() const { return evaluator_; }
-  [[nodiscard]] const Eigen::Quaterniond& rotation() const { return rotation_; }
+  /// The orientation, of a set the first.
+  [[nodiscard]] const Eigen::Quaterniond& rotation() const { return rotations_.front(); }
+  [[nodiscard]] std::size_t orientations() const { return rotations_.size(); }
   [[nodiscard]] std::size_t poses() const { return poses_; }
+  /// Poses that take long are counted aloud, some hundred at a time.
+  void set_counter(PoseCounter counter) { counter_ = std::move(counter); }
   /// Which of x, y, z the machine can command.
   [[nodiscard]] const std::array<bool, 3>& active() const { return active_; }
   [[nodiscard]] int dimensions() const { return active_[0] + active_[1] + active_[2]; }
 
  private:
+  [[nodiscard]] BatchResult evaluate(const PoseBatch& poses) const;
+
   const Evaluator& evaluator_;
-  Eigen::Quaterniond rotation_;
+  std::vector<Eigen::Quaterniond> rotations_;
+  PoseCounter counter_;
   std::vector<std::string> names_;
   std::array<bool, 3> active_{};
   bool square_ = false;  ///< as many drives as task axes

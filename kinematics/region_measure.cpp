@@ -213,9 +213,15 @@ class Measurer {
     if (result_.best == 0) result_.worst = 0;
   }
 
-  /// Sub-cells of the mixed cells that are wholly in, or not wholly out.
+  /// Sub-cells of the mixed cells that are wholly in, or not wholly out. Undivided, they are
+  /// neither; all that is to be asked about them was asked.
   void bound() {
     const int split = fineness_.split;
+    if (split == 1) {
+      result_.lower = whole_ * cell_size_;
+      result_.upper = result_.lower + static_cast<double>(mixed_.size()) * cell_size_;
+      return;
+    }
     std::array<int, 3> nodes, parts;
     for (int axis = 0; axis < 3; ++axis) {
       nodes[axis] = active_[axis] ? split + 1 : 1;

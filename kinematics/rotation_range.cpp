@@ -84,13 +84,13 @@ std::optional<RotationRange> widest_rotation(const Evaluator& evaluator, const B
   const int axis = task.axes.back() - 3;
   Turner turner(evaluator, axis);
 
-  constexpr int kPlaces = 9;  // per direction
+  const int along = evaluator.closed_form() ? 9 : 3;  // per direction
   Points all, places;
   all.add(Vector3::Zero());
-  for (int k = 0; k < kPlaces; ++k)
-    for (int j = 0; j < kPlaces; ++j)
-      for (int i = 0; i < kPlaces; ++i) {
-        const Vector3 share = Vector3(i + 0.5, j + 0.5, k + 0.5) / kPlaces;
+  for (int k = 0; k < along; ++k)
+    for (int j = 0; j < along; ++j)
+      for (int i = 0; i < along; ++i) {
+        const Vector3 share = Vector3(i + 0.5, j + 0.5, k + 0.5) / along;
         all.add(extent.lower + share.cwiseProduct(extent.upper - extent.lower));
       }
   const std::vector<std::string> stopped = turner.stopped_at(all, 0);

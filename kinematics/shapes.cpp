@@ -7,40 +7,6 @@
 namespace polyglide {
 namespace {
 
-/// Points on the surface of a cylinder: its edges, which fail first; then the rest.
-std::vector<Points> cylinder_surface(const Shape& s, const std::vector<Eigen::Vector2d>& circle,
-                                     const Density& density) {
-  std::vector<Points> parts(2);
-  const auto ring = [&](Points& part, double radius, double z, std::size_t stride) {
-    for (std::size_t a = 0; a < circle.size(); a += stride)
-      part.add({s[0] + radius * circle[a].x(), s[1] + radius * circle[a].y(), z});
-  };
-  for (double z : {s[2], s[3]}) {
-    ring(parts[0], s[4], z, 1);
-    ring(parts[1], 0, z, circle.size());
-    for (int r = 1; r < density.rings; ++r) ring(parts[1], s[4] * r / density.rings, z, 2);
-  }
-  for (int l = 1; l < density.levels; ++l)
-    ring(parts[1], s[4], s[2] + (s[3] - s[2]) * l / density.levels, 1);
-  return parts;
-}
-
-/// Points on the surface of a box, corners and edges before the rest.
-std::vector<Points> box_surface(const Shape& s, int parts_per_edge) {
-  std::vector<Points> parts(2);
-  const int n = parts_per_edge;
-  for (int k = 0; k <= n; ++k)
-    for (int j = 0; j <= n; ++j)
-      for (int i = 0; i <= n; ++i) {
-        const int outer = (i == 0 || i == n) + (j == 0 || j == n) + (k == 0 || k == n);
-        if (outer == 0) continue;
-        const Vector3 share = Vector3(i, j, k) / n;
-        const Vector3 size = s.tail<3>() - s.head<3>();
-        parts[outer >= 2 ? 0 : 1].add(s.head<3>() + share.cwiseProduct(size));
-      }
-  return parts;
-}
-
 bool all_inside(const Probe& probe, const std::vector<Points>& parts) {
   return std::all_of(parts.begin(), parts.end(),
                      [&probe](const Points& part) { return probe.all_inside(part); });
@@ -91,22 +57,91 @@ Shape middle_of(const Shape& s) {
   return middle;
 }
 
+Sphere as_sphere(const Shape& s) { return {2 * s[3], s.head<3>()}; }
+
+Shape as_shape(const Sphere& sphere) {
+  Shape s(4);
+  s << sphere.center, sphere.diameter / 2;
+  return s;
+}
+
+Shape centre_of(const Shape& s) {
+  Shape centre(4);
+  centre << s.head<3>(), 0;
+  return centre;
+}
+
 bool is_box(const Shape& s) { return (s.tail<3>() - s.head<3>()).minCoeff() > 0; }
 
-std::function<bool(const Shape&)> cylinder_fits(const Probe& probe, const Density& density) {
+Surface cylinder_surface(const Density& density) {
   std::vector<Eigen::Vector2d> circle;
   for (int a = 0; a < density.angles; ++a) {
     const double angle = 2 * M_PI * a / density.angles;
     circle.emplace_back(std::cos(angle), std::sin(angle));
   }
-  return [&probe, density, circle](const Shape& s) {
-    return s[3] >= s[2] && s[4] > 0 && all_inside(probe, cylinder_surface(s, circle, density));
+  return [circle, density](const Shape& s) {
+    std::vector<Points> parts(2);
+    const auto ring = [&](Points& part, double radius, double z, std::size_t stride) {
+      for (std::size_t a = 0; a < circle.size(); a += stride)
+        part.add({s[0] + radius * circle[a].x(), s[1] + radius * circle[a].y(), z});
+    };
+    for (double z : {s[2], s[3]}) {
+      ring(parts[0], s[4], z, 1);
+      ring(parts[1], 0, z, circle.size());
+      for (int r = 1; r < density.rings; ++r) ring(parts[1], s[4] * r / density.rings, z, 2);
+    }
+    for (int l = 1; l < density.levels; ++l)
+      ring(parts[1], s[4], s[2] + (s[3] - s[2]) * l / density.levels, 1);
+    return parts;
+  };
+}
+
+Surface box_surface(const Density& density) {
+  return [n = density.parts](const Shape& s) {
+    std::vector<Points> parts(2);
+    for (int k = 0; k <= n; ++k)
+      for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) {
+          const int outer = (i == 0 || i == n) + (j == 0 || j == n) + (k == 0 || k == n);
+          if (outer == 0) continue;
+          const Vector3 share = Vector3(i, j, k) / n;
+          const Vector3 size = s.tail<3>() - s.head<3>();
+          parts[outer >= 2 ? 0 : 1].add(s.head<3>() + share.cwiseProduct(size));
+        }
+    return parts;
+  };
+}
+
+Surface sphere_surface(const Density& density) {
+  std::vector<Vector3> directions;
+  const double turn = M_PI * (3 - std::sqrt(5.0));
+  for (int i = 0; i < density.places; ++i) {
+    const double z = 1 - (2 * i + 1.0) / density.places, radius = std::sqrt(1 - z * z);
+    directions.emplace_back(radius * std::cos(turn * i), radius * std::sin(turn * i), z);
+  }
+  return [directions](const Shape& s) {
+    std::vector<Points> parts(2);  // a few all round find most failures
+    for (std::size_t i = 0; i < directions.size(); ++i)
+      parts[i % 8 == 0 ? 0 : 1].add(s.head<3>() + s[3] * directions[i]);
+    return parts;
+  };
+}
+
+std::function<bool(const Shape&)> cylinder_fits(const Probe& probe, const Density& density) {
+  return [&probe, surface = cylinder_surface(density)](const Shape& s) {
+    return s[3] >= s[2] && s[4] > 0 && all_inside(probe, surface(s));
   };
 }
 
 std::function<bool(const Shape&)> box_fits(const Probe& probe, const Density& density) {
-  return [&probe, density](const Shape& s) {
-    return is_box(s) && all_inside(probe, box_surface(s, density.parts));
+  return [&probe, surface = box_surface(density)](const Shape& s) {
+    return is_box(s) && all_inside(probe, surface(s));
+  };
+}
+
+std::function<bool(const Shape&)> sphere_fits(const Probe& probe, const Density& density) {
+  return [&probe, surface = sphere_surface(density)](const Shape& s) {
+    return s[3] > 0 && all_inside(probe, surface(s));
   };
 }
 
@@ -153,6 +188,17 @@ std::vector<Shape> box_moves() {
       if (other != axis)
         for (double trade : {0.5, 1.0, 2.0})
           moves.push_back(face(axis) + face(axis + 3) - trade * (face(other) + face(other + 3)));
+  return moves;
+}
+
+std::vector<Shape> sphere_moves() {
+  std::vector<Shape> moves;
+  for (double growth : {1.0, 0.1})
+    for (int shift = 0; shift < 27; ++shift) {
+      Shape move(4);
+      move << (shift + 1) % 3 - 1, (shift / 3 + 1) % 3 - 1, (shift / 9 + 1) % 3 - 1, growth;
+      moves.push_back(move);
+    }
   return moves;
 }
 

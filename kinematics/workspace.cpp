@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "kinematics/certified_volume.hpp"
 #include "kinematics/clearance.hpp"
@@ -55,13 +56,17 @@ std::vector<Slice> make_slices(const Probe& probe, const Region& region, const B
                 spread(extent.lower.y(), extent.upper.y(), samples(size.y())),
                 {}};
     Points points;
+    std::vector<std::size_t> near;
     for (double y : slice.y)
-      for (double x : slice.x) points.add({x, y, z});
+      for (double x : slice.x) {
+        slice.inverse_condition.push_back(std::numeric_limits<double>::quiet_NaN());
+        if (!near_region(region, {x, y, z})) continue;
+        near.push_back(slice.inverse_condition.size() - 1);
+        points.add({x, y, z});
+      }
     const Probe::Answers answers = probe.ask(points);
     for (std::size_t i = 0; i < points.size(); ++i)
-      slice.inverse_condition.push_back(answers.inside(i) && near_region(region, points[i])
-                                            ? answers.inverse_condition[i]
-                                            : std::numeric_limits<double>::quiet_NaN());
+      if (answers.inside(i)) slice.inverse_condition[near[i]] = answers.inverse_condition[i];
     slices.push_back(std::move(slice));
   }
   return slices;
@@ -72,6 +77,7 @@ void take_measure(Workspace& result, const Probe& probe, const Region& region,
   result.global_conditioning = measured.mean;
   result.worst = measured.worst;
   result.best = measured.best;
+  if (probe.dimensions() == 1) result.length = measured.value;
   if (probe.dimensions() == 3) {
     result.volume = measured.value;
     result.volume_lower = measured.lower;
@@ -117,44 +123,117 @@ void certify(Workspace& result, const Machine& machine, const WorkspaceOptions& 
   result.volume = std::clamp(result.volume, proved->lower, proved->upper);
 }
 
+/// Poses that a workspace takes, about: to say how much of the work is done.
+double expected_poses(const Evaluator& evaluator, std::size_t orientations) {
+  constexpr double kClosedForm = 9e6, kGeneral = 8e3;
+  return (evaluator.closed_form() ? kClosedForm : kGeneral) *
+         static_cast<double>(orientations + 1) / 2;
+}
+
+PoseCounter counter_for(const WorkspaceOptions& options, double expected) {
+  if (!options.progress) return {};
+  return [report = options.progress, expected](std::size_t poses) {
+    const auto done = static_cast<double>(poses);
+    report(done, std::max(expected, done * 1.02));
+  };
+}
+
+/// Orientations at every place; one for a workspace at one orientation.
+std::vector<Eigen::Quaterniond> orientations_of(const Machine& machine,
+                                                const WorkspaceOptions& options, int fineness) {
+  if (!options.orientations) return {options.rotation};
+  const OrientationSet& set = *options.orientations;
+  const double most = greatest_tilt(machine.task);
+  if (!(set.tilt >= 0 && set.tilt <= most && set.torsion >= 0 && set.torsion <= M_PI))
+    throw std::invalid_argument(
+        "compute_workspace: orientations need tilt and torsion from 0 to their greatest");
+  return sample(machine.task, set, fineness);
+}
+
+/// Orientations between which nothing is asked: how many, and what a coarser set says.
+OrientationSamples compare_samples(const Evaluator& evaluator, const WorkspaceOptions& options,
+                                   std::size_t count, const std::vector<Eigen::Quaterniond>& few,
+                                   double volume, std::size_t& poses) {
+  constexpr double kRough = 5e-3;
+  OrientationSamples samples{*options.orientations, count, few.size(), 0};
+  Probe probe(evaluator, few);
+  const RegionFineness fineness = region_fineness(kRough, evaluator.closed_form());
+  const Region region = explore(probe, fineness.nodes);
+  const double before = region.empty ? 0 : measure_region(probe, region, fineness, kRough).value;
+  samples.change = before > 0 ? std::max(0.0, 1 - volume / before) : 0;
+  poses += probe.poses();
+  return samples;
+}
+
+std::string limit_at_home(const Probe& probe) {
+  Points home;
+  home.add(Vector3::Zero());
+  const int limit = probe.ask(home).limit[0];
+  return limit < 0 ? "" : probe.names()[limit];
+}
+
+/// The largest shapes inside, and why they are believed to be.
+void inscribe(Workspace& result, const Probe& probe, const Inscriber& inscriber) {
+  tbb::parallel_invoke([&] { result.cylinders = inscriber.tallest_cylinders(); },
+                       [&] {
+                         result.inscribed_cylinder = inscriber.largest_cylinder();
+                         result.cylinder_evidence = evidence_for(probe, result.inscribed_cylinder);
+                       },
+                       [&] {
+                         result.inscribed_box = inscriber.largest_box();
+                         result.box_evidence = evidence_for(probe, result.inscribed_box);
+                       },
+                       [&] {
+                         result.inscribed_sphere = inscriber.largest_sphere();
+                         result.sphere_evidence = evidence_for(probe, result.inscribed_sphere);
+                       });
+}
+
 }  // namespace
 
 Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Evaluator evaluator(machine, options.ignored);
-  Probe probe(evaluator, options.rotation);
+  const int samples = evaluator.closed_form() ? 3 : 1;
+  Probe probe(evaluator, orientations_of(machine, options, samples));
+  probe.set_counter(counter_for(options, expected_poses(evaluator, probe.orientations())));
   const RegionFineness fineness =
       region_fineness(sampled_accuracy(options), evaluator.closed_form());
 
   Workspace result;
   result.characteristic_length = machine.task.characteristic_length;
   const Region region = explore(probe, fineness.nodes);
+  const bool one = !options.orientations;
   if (!region.empty) {
     take_measure(result, probe, region,
                  measure_region(probe, region, fineness, sampled_accuracy(options)));
     const Boundary boundary = find_boundary(probe, region, fineness.bisections);
     result.limits_hit = boundary.limits;
-    if (!options.volume_only && probe.dimensions() == 3)
+    if (one && !options.volume_only && probe.dimensions() == 3)
       certify(result, evaluator.machine(), options, region, search_bounds(probe));
     result.lower = boundary.extent.lower;
     result.upper = boundary.extent.upper;
     if (!options.volume_only)
       result.slices = make_slices(probe, region, boundary.extent, options.slices);
   }
-  if (!options.volume_only) measure_by_quadrature(result, probe, region, options);
+  if (one && !options.volume_only) measure_by_quadrature(result, probe, region, options);
   if (!region.empty && (!options.volume_only || options.box || options.cylinder)) {
     const Inscriber inscriber(probe, region);
-    if (!options.volume_only) {
-      tbb::parallel_invoke([&] { result.cylinders = inscriber.tallest_cylinders(); },
-                           [&] { result.inscribed_cylinder = inscriber.largest_cylinder(); },
-                           [&] { result.inscribed_box = inscriber.largest_box(); });
-    }
+    if (!options.volume_only) inscribe(result, probe, inscriber);
     if (options.box) result.asked_box = inscriber.place(*options.box);
     if (options.cylinder)
       result.asked_cylinder = inscriber.place(options.cylinder->first, options.cylinder->second);
   }
+  if (region.empty) result.stopped_by = limit_at_home(probe);
   result.poses = probe.poses();
-  if (!region.empty && !options.volume_only && machine.task.translations == 3) {
+  if (!one) {
+    const double size = result.volume + result.area + result.length;  // two of them are zero
+    result.orientations = compare_samples(
+        evaluator, options, probe.orientations(),
+        orientations_of(machine, options, std::max(1, samples / 2)), size, result.poses);
+    result.volume_lower *= 1 - result.orientations->change;
+  }
+  if (one && !region.empty && !options.volume_only && machine.task.translations == 3) {
     const double degrees = evaluator.closed_form() ? 1 : 5;
     result.rotation_range = widest_rotation(evaluator, {result.lower, result.upper},
                                             degrees * M_PI / 180, result.poses);

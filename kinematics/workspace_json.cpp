@@ -26,6 +26,32 @@ Json json_of(const Box& box) {
   return {{"size", json_of(box.size)}, {"center", json_of(box.center)}};
 }
 
+Json json_of(const Sphere& sphere) {
+  return {{"diameter", tidy(sphere.diameter)}, {"center", json_of(sphere.center)}};
+}
+
+/// A shape with its evidence.
+template <typename Shape>
+Json json_of(const Shape& shape, const ShapeEvidence& evidence) {
+  Json json = json_of(shape);
+  Json touches = Json::array();
+  for (const auto& touch : evidence.touches)
+    touches.push_back({{"limit", touch.limit}, {"at", json_of(touch.at)}});
+  json["evidence"] = {{"places", evidence.places},
+                      {"spacing", tidy(evidence.spacing)},
+                      {"outside", evidence.outside}};
+  json["touches"] = std::move(touches);
+  return json;
+}
+
+Json json_of(const OrientationSamples& samples) {
+  return {{"tilt", samples.set.tilt},
+          {"torsion", samples.set.torsion},
+          {"samples", samples.count},
+          {"coarser_samples", samples.coarser},
+          {"change", tidy(samples.change)}};
+}
+
 Json json_of(const std::vector<double>& values) {
   Json list = Json::array();
   for (double value : values) list.push_back(tidy(value));
@@ -55,22 +81,25 @@ Json to_json(const Workspace& workspace) {
   Json json;
   json["volume"] = workspace.volume;
   json["volume_bounds"] = {workspace.volume_lower, workspace.volume_upper};
-  json["volume_error"] = workspace.area ? 0 : workspace.error;
-  if (workspace.area) {
-    json["area"] = *workspace.area;
+  json["volume_error"] = workspace.area > 0 ? 0 : workspace.error;
+  json["area"] = workspace.area;
+  if (workspace.area > 0) {
     json["area_bounds"] = {workspace.area_lower, workspace.area_upper};
     json["area_error"] = workspace.error;
   }
+  json["length"] = workspace.length;
   json["method"] = workspace.method;
   json["reach"] = workspace.reach ? Json(*workspace.reach) : Json(nullptr);
   if (workspace.singular_throughout) json["singular_throughout"] = true;
+  if (workspace.orientations) json["orientations"] = json_of(*workspace.orientations);
   json["bounds"] = workspace.certified ? "certified" : "estimated";
   json["extent"] = {{"lower", json_of(workspace.lower)}, {"upper", json_of(workspace.upper)}};
   json["area_by_z"] = Json::array();
   for (const auto& [z, area] : workspace.area_by_z)
     json["area_by_z"].push_back({tidy(z), tidy(area)});
-  json["inscribed_cylinder"] = json_of(workspace.inscribed_cylinder);
-  json["inscribed_box"] = json_of(workspace.inscribed_box);
+  json["inscribed_cylinder"] = json_of(workspace.inscribed_cylinder, workspace.cylinder_evidence);
+  json["inscribed_box"] = json_of(workspace.inscribed_box, workspace.box_evidence);
+  json["inscribed_sphere"] = json_of(workspace.inscribed_sphere, workspace.sphere_evidence);
   json["cylinders"] = Json::array();
   for (const Cylinder& cylinder : workspace.cylinders)
     json["cylinders"].push_back(json_of(cylinder));
@@ -85,6 +114,7 @@ Json to_json(const Workspace& workspace) {
                               {"max", range->max},
                               {"min_limit", range->min_limit},
                               {"max_limit", range->max_limit}};
+  if (!workspace.stopped_by.empty()) json["stopped_by"] = workspace.stopped_by;
   json["limits_hit"] = workspace.limits_hit;
   json["slices"] = Json::array();
   for (const Slice& slice : workspace.slices) json["slices"].push_back(json_of(slice));

@@ -105,5 +105,86 @@ TEST(Inscribed, EveryPointOfAFoundShapeIsReachable) {
   }
 }
 
+TEST(Inscribed, TheLargestSphereInATriangularPrismTouchesTheNarrowestPair) {
+  EXPECT_NEAR(shapes_of(triangular_prism(0.6, 0.2)).inscribed_sphere.diameter, 0.2, 1e-3);
+  const Sphere wide = shapes_of(triangular_prism(0.6, 0.6)).inscribed_sphere;
+  EXPECT_NEAR(wide.diameter, 0.6 / std::sqrt(3), 1e-3);
+}
+
+/// Places within 1 of (0, 0, ±1/2): a lens. Its third leg makes the plane y = 0 singular.
+Machine half_lens() {
+  constexpr double kHome = 0.3;
+  const Vector3 head(0, kHome, 0);
+  Mechanism mechanism = strutted({{{0, 0, 0.5}, head}, {{0, 0, -0.5}, head}, {{5, 0, 0}, head}});
+  for (Joint& joint : mechanism.joints)
+    if (joint.type == JointType::prismatic && joint.name != "leg3.strut")
+      joint.range = {{-0.1, 1 - std::hypot(kHome, 0.5)}};
+  return prepare(mechanism, task_of({0, 1, 2}));
+}
+
+// In half the lens: r = y and r = 1 − sqrt(y² + 1/4) give 3/8.
+TEST(Inscribed, TheLargestSphereInHalfALensHasItsClosedForm) {
+  Machine machine = half_lens();
+  WorkspaceOptions options;
+  options.ignored = {"stroke leg1.strut min", "stroke leg2.strut min"};
+  const Workspace workspace = shapes_of(machine, options);
+  EXPECT_NEAR(workspace.volume, 1.3089969389957472 / 2, 0.004);
+  EXPECT_NEAR(workspace.inscribed_sphere.diameter, 0.75, 2e-3);
+  EXPECT_LE(workspace.inscribed_sphere.diameter, 0.75 * (1 + 2e-4));
+  EXPECT_NEAR(workspace.inscribed_sphere.center.y(), 0.375 - 0.3, 2e-3);
+  bool singular = false;
+  for (const auto& touch : workspace.sphere_evidence.touches)
+    singular = singular || touch.limit == "singularity";
+  EXPECT_TRUE(singular);
+}
+
+TEST(Inscribed, ShapesComeWithPlacesAskedAndLimitsThatTouch) {
+  const Workspace workspace = shapes_of(catalog_machine("delta-1"));
+  for (const ShapeEvidence* dut :
+       {&workspace.cylinder_evidence, &workspace.box_evidence, &workspace.sphere_evidence}) {
+    EXPECT_GT(dut->places, 5000u);
+    EXPECT_EQ(dut->outside, 0u);
+    EXPECT_GT(dut->spacing, 0);
+    EXPECT_GE(dut->touches.size(), 1u);
+  }
+}
+
+/// Distance of places to the boundary along many directions, by brute force over all places.
+double widest_by_brute_force(const Machine& machine, const Workspace& workspace) {
+  const Evaluator evaluator(machine);
+  const Probe probe(evaluator, Eigen::Quaterniond::Identity());
+  std::vector<Points> shell = sphere_surface({0, 0, 0, 0, 300})(as_shape(Sphere{2, {0, 0, 0}}));
+  double best = 0;
+  constexpr int kPlaces = 14;
+  for (int k = 0; k < kPlaces * kPlaces * kPlaces; ++k) {
+    const Vector3 share(k % kPlaces, k / kPlaces % kPlaces, k / kPlaces / kPlaces);
+    const Vector3 at =
+        workspace.lower +
+        (workspace.upper - workspace.lower).cwiseProduct(share + Vector3::Constant(0.5)) / kPlaces;
+    // Only places that could do better are grown.
+    for (double radius = best * 1.01 + 1e-3;; radius *= 1.01) {
+      bool inside = true;
+      for (const Points& part : shell) {
+        Points moved;
+        for (std::size_t i = 0; i < part.size(); ++i) moved.add(at + radius * part[i]);
+        inside = inside && probe.all_inside(moved);
+      }
+      if (!inside) break;
+      best = radius;
+    }
+  }
+  return 2 * best;
+}
+
+TEST(Inscribed, NoSphereOfABruteForceSearchIsLarger) {
+  for (const char* name : {"delta-1", "tripod-70", "hexapod-6ups"}) {
+    const Machine machine = catalog_machine(name);
+    const Workspace workspace = shapes_of(machine);
+    const double brute = widest_by_brute_force(machine, workspace);
+    EXPECT_GT(workspace.inscribed_sphere.diameter, brute * 0.995) << name;
+    EXPECT_LT(workspace.inscribed_sphere.diameter, brute * 1.25) << name;
+  }
+}
+
 }  // namespace
 }  // namespace polyglide

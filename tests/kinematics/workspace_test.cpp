@@ -49,6 +49,34 @@ TEST(Workspace, ALinearDeltaHasTheVolumeOfItsClosedForm) {
   EXPECT_GT(workspace.volume_upper, expected);
 }
 
+/// Telescopes from `feet` to one point, home at `home`, each at most of length 1; three of them
+/// are singular in the plane of their feet, which halves what is symmetric about it.
+Machine telescopes(const std::vector<Vector3>& feet, const Vector3& home) {
+  std::vector<std::pair<Vector3, Vector3>> limbs;
+  for (const Vector3& foot : feet) limbs.emplace_back(foot, home);
+  Mechanism mechanism = strutted(limbs);
+  std::size_t leg = 0;
+  for (Joint& joint : mechanism.joints)
+    if (joint.type == JointType::prismatic)
+      joint.range = {{-0.99, 1 - (home - feet[leg++]).norm()}};
+  return prepare(mechanism, task_of({0, 1, 2}));
+}
+
+TEST(Workspace, ProvedBoundsHoldHalfOfWhatThreeSpheresShare) {
+  const auto expected = truth()["three_unit_spheres_distance1"]["value"].get<double>() / 2;
+  const double height = std::sqrt(3) / 2;
+  WorkspaceOptions options;
+  options.ignored = {"stroke leg1.strut min", "stroke leg2.strut min", "stroke leg3.strut min"};
+  const Workspace dut = compute_workspace(
+      telescopes({{-0.5, 0, 0}, {0.5, 0, 0}, {0, height, 0}}, {0, height / 3, 0.3}), options);
+  EXPECT_TRUE(dut.certified);
+  EXPECT_LE(dut.volume_lower, expected);
+  EXPECT_GE(dut.volume_upper, expected);
+  EXPECT_LT(dut.volume_upper - dut.volume_lower, 2e-3 * expected);
+  EXPECT_NEAR(dut.volume, expected, 1e-3 * expected);
+  EXPECT_GT(dut.limits_hit.at("singularity"), 0.1);
+}
+
 TEST(Workspace, APrismHasItsVolumeWhateverTheGrid) {
   const Machine machine = prism({{Vector3::UnitX(), 0.3},
                                  {-Vector3::UnitX(), 0.1},
