@@ -41,7 +41,9 @@ struct Lanes {
   static void store_signs(signed char* to, const V& value) {
     alignas(64) double values[count];
     value.store_aligned(values);
-    for (int i = 0; i < count; ++i) Lanes<double>::store_signs(to + i, values[i]);
+    // Not by Lanes<double>, whose symbols other instruction sets share.
+    for (int i = 0; i < count; ++i)
+      to[i] = static_cast<signed char>((values[i] > 0) - (values[i] < 0));
   }
 };
 
