@@ -17,6 +17,7 @@ namespace polyglide {
 namespace {
 
 namespace fs = std::filesystem;
+using fixtures::sample;
 
 /// What the browser made of a page.
 struct Opened {
