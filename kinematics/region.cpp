@@ -206,7 +206,14 @@ Probe::Answers Probe::ask(const Points& points, bool conditioning) const {
   return answers;
 }
 
+bool Probe::beyond_reach(const Vector3& place) const {
+  return reach_ && ((place.array() < reach_->lower.array()).any() ||
+                    (place.array() > reach_->upper.array()).any());
+}
+
 bool Probe::all_inside(const Points& points) const {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (beyond_reach(points[i])) return false;
   return std::all_of(rotations_.begin(), rotations_.end(), [&](const auto& rotation) {
     const Answers answers = ask({points.x, points.y, points.z, rotation}, false);
     return std::all_of(answers.limit.begin(), answers.limit.end(),

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,11 @@ struct Points {
   }
   [[nodiscard]] std::size_t size() const { return x.size(); }
   [[nodiscard]] Vector3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
+/// Axis-parallel box of tool displacements.
+struct Bounds {
+  Vector3 lower = Vector3::Zero(), upper = Vector3::Zero();
 };
 
 /// Told how many poses were asked so far, from the thread that asks.
@@ -46,7 +52,11 @@ class Probe {
   [[nodiscard]] Answers ask(const Points& points, bool conditioning = true) const;
   /// The same for poses with orientations of their own.
   [[nodiscard]] Answers ask(PoseBatch poses, bool conditioning = true) const;
+  /// Also false when a place lies beyond the reach set.
   [[nodiscard]] bool all_inside(const Points& points) const;
+  /// Where nothing else bounds a shape it would grow for ever.
+  void set_reach(const Bounds& reach) { reach_ = reach; }
+  [[nodiscard]] bool beyond_reach(const Vector3& place) const;
 
   /// Limit names of the evaluator, then "singularity" and "search box".
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
@@ -74,16 +84,12 @@ class Probe {
   const Evaluator& evaluator_;
   std::vector<Eigen::Quaterniond> rotations_;
   PoseCounter counter_;
+  std::optional<Bounds> reach_;
   std::vector<std::string> names_;
   std::array<bool, 3> active_{};
   bool square_ = false;  ///< as many drives as task axes
   int side_ = 0;
   mutable std::atomic<std::size_t> poses_ = 0;
-};
-
-/// Axis-parallel box of tool displacements.
-struct Bounds {
-  Vector3 lower = Vector3::Zero(), upper = Vector3::Zero();
 };
 
 /// A box that holds every place the tool can reach: for leg machines from

@@ -16,8 +16,9 @@ std::vector<ShapeEvidence::Touch> touches_of(const Probe& probe, const std::vect
   for (const Points& points : parts) {
     const Probe::Answers answers = probe.ask(points, false);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (answers.inside(i)) continue;
-      const std::string& limit = probe.names()[answers.limit[i]];
+      const bool beyond = probe.beyond_reach(points[i]);
+      if (answers.inside(i) && !beyond) continue;
+      const std::string& limit = probe.names()[beyond ? probe.search_box() : answers.limit[i]];
       if (std::none_of(touches.begin(), touches.end(),
                        [&](const auto& touch) { return touch.limit == limit; }))
         touches.push_back({limit, points[i]});

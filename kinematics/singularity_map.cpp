@@ -17,10 +17,8 @@ namespace {
 using Coordinates = Eigen::Matrix<double, 6, 1>;
 using std::numbers::pi;
 
-constexpr int kCut = 4;              // refined cells per side of a cell
 constexpr double kSingular = 1e-6;   // 1/κ
 constexpr double kSuspect = 0.02;    // 1/κ below which a cell is refined
-constexpr double kAtReach = 1e-2;    // margins fall with the root of what is left of the reach
 constexpr signed char kUnknown = 2;  // class of nodes that were not asked
 
 /// All limits of an evaluator but those without which there is no posture.
@@ -43,7 +41,10 @@ class Mapper {
   Mapper(const Machine& machine, const SingularityMapOptions& options)
       : options_(options),
         limited_(machine, options.ignored),
-        free_(machine, limits_to_ignore(limited_)) {
+        free_(machine, limits_to_ignore(limited_)),
+        cut_(free_.closed_form() ? 4 : 2),
+        near_(free_.closed_form() ? 1e-4 : 1e-3),
+        at_reach_(free_.closed_form() ? 1e-2 : 4e-2) {
     map_.axes = options.axes;
     map_.at = options.at;
     map_.square = machine.model.drives.size() == machine.task.axes.size();
@@ -180,17 +181,17 @@ class Mapper {
 
   /// Classes of the fine nodes in and about the cells where something changes.
   void refine() {
-    fine_width_ = (u_.count - 1) * kCut + 1;
-    const int height = (v_.count - 1) * kCut + 1;
+    fine_width_ = (u_.count - 1) * cut_ + 1;
+    const int height = (v_.count - 1) * cut_ + 1;
     reach_.assign(static_cast<std::size_t>(fine_width_) * height, kUnknown);
     side_ = reach_;
-    map_.cell = {u_.step / kCut, v_.step / kCut};
+    map_.cell = {u_.step / cut_, v_.step / cut_};
     std::vector<char> wanted(reach_.size(), 0);
     for (int j = 0; j + 1 < v_.count; ++j)
       for (int i = 0; i + 1 < u_.count; ++i) {
         if (!changes(i, j)) continue;
-        for (int b = std::max(0, (j - 1) * kCut); b <= std::min(height - 1, (j + 2) * kCut); ++b)
-          for (int a = std::max(0, (i - 1) * kCut); a <= std::min(fine_width_ - 1, (i + 2) * kCut);
+        for (int b = std::max(0, (j - 1) * cut_); b <= std::min(height - 1, (j + 2) * cut_); ++b)
+          for (int a = std::max(0, (i - 1) * cut_); a <= std::min(fine_width_ - 1, (i + 2) * cut_);
                ++a)
             wanted[a + static_cast<std::size_t>(fine_width_) * b] = 1;
       }
@@ -226,7 +227,7 @@ class Mapper {
 
   /// Fine node units to u, v.
   [[nodiscard]] std::array<double, 2> place(const std::array<double, 2>& node) const {
-    return {u_.at(node[0] / kCut), v_.at(node[1] / kCut)};
+    return {u_.at(node[0] / cut_), v_.at(node[1] / cut_)};
   }
 
   [[nodiscard]] bool is_one(const BatchResult& answers, std::size_t i, bool reach) const {
@@ -248,7 +249,7 @@ class Mapper {
   }
 
   void trace(const std::vector<signed char>& classes, bool reach) {
-    const int rounds = free_.closed_form() ? 36 : 12;
+    const int rounds = free_.closed_form() ? 36 : 8;
     for (const Contour& contour :
          contours(classes, fine_width_, [&](auto& edges) { bisect(edges, reach, rounds); })) {
       SingularCurve curve;
@@ -274,7 +275,7 @@ class Mapper {
       Posture posture = home(machine.model);
       if (!solve_inverse_general(machine, pose_of(c), posture).reachable) continue;
       const Singularity found =
-          singularity_at(machine, posture, mobility_, reach ? kAtReach : kNear);
+          singularity_at(machine, posture, mobility_, reach ? at_reach_ : near_);
       if (found.regular()) continue;
       const auto add = [&](bool has, const char* word) {
         if (has) curve.kind += (curve.kind.empty() ? "" : " and ") + std::string(word);
@@ -290,9 +291,11 @@ class Mapper {
     return false;
   }
 
-  static constexpr double kNear = 1e-4;  // margin beside a curve that was bisected
   const SingularityMapOptions& options_;
   Evaluator limited_, free_;
+  int cut_;          ///< refined cells per side of a cell
+  double near_;      ///< margins beside a curve that was bisected
+  double at_reach_;  ///< the same at an end of reach: they fall with the root of what is left
   std::array<std::array<double, 2>, 2> range_{};
   Axis u_, v_;
   int fine_width_ = 0, mobility_ = -1;

@@ -53,11 +53,11 @@ struct SingularityMap {
 };
 
 /// Evaluates a grid, cuts the cells between which the sign of det J or the reach changes, their
-/// neighbours and those that are nearly singular into 4×4, and extracts the curves by marching
-/// squares with ends bisected on the edges. A posture half way along each curve is classified, or
-/// one of two others when that is regular.
-/// The slice is drawn round what is within limits, or else round what can be reached.
-/// Cost: some 1e5 poses in closed form, some 1e3 otherwise.
+/// neighbours and those that are nearly singular into 4×4 (2×2 without closed form), and extracts
+/// the curves by marching squares with ends bisected on the edges. A posture half way along each
+/// curve is classified, or one of two others when that is regular. The slice is drawn round what is
+/// within limits, or else round what can be reached. Cost: some 1e5 poses in closed form, some 1e3
+/// otherwise.
 /// @throws std::invalid_argument for axes that are equal or not commanded, or a place not finite
 [[nodiscard]] SingularityMap singularity_map(const Machine& machine,
                                              const SingularityMapOptions& options);

@@ -203,6 +203,7 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
   Workspace result;
   result.characteristic_length = machine.task.characteristic_length;
   const Region region = explore(probe, fineness.nodes);
+  if (evaluator.closed_form()) probe.set_reach(search_bounds(probe));
   const bool one = !options.orientations;
   if (!region.empty) {
     take_measure(result, probe, region,
