@@ -6,6 +6,7 @@
 #include "cases.hpp"
 #include "catalog/json_file.hpp"
 #include "kinematics/branches.hpp"
+#include "kinematics/limb_wrenches.hpp"
 #include "kinematics/motion.hpp"
 #include "variations.hpp"
 
@@ -76,6 +77,35 @@ TEST_P(VerdictOf, DoesNotDependOnUnitFrameOrderOrWhichBodyOfAJointComesFirst) {
     expect_same_verdict(reference_, briefly_checked(variations::moved(
                                         other, variations::random_frame(random, scale), scale)));
   }
+}
+
+/// What a limb is and bears, without the order of its joints.
+struct Limb {
+  std::vector<std::string> joints;  ///< sorted
+  int connectivity = 0;
+  std::size_t constraints = 0, actuations = 0;
+  auto operator<=>(const Limb&) const = default;
+};
+
+/// Sorted.
+std::vector<Limb> limbs_of(const Mechanism& mechanism) {
+  std::vector<Limb> limbs;
+  for (const LimbWrenches& limb : limb_wrenches(mechanism)) {
+    limbs.push_back(
+        {limb.joints, limb.connectivity, limb.constraints.size(), limb.actuations.size()});
+    std::ranges::sort(limbs.back().joints);
+  }
+  std::ranges::sort(limbs);
+  return limbs;
+}
+
+TEST_P(VerdictOf, LimbsDoNotDependOnOrderOrWhichBodyOfAJointComesFirst) {
+  const std::vector<Limb> reference = limbs_of(mechanism_);
+  std::mt19937_64 random(17);
+  for (int i = 0; i < 8; ++i)
+    EXPECT_TRUE(limbs_of(variations::swapped(variations::renumbered(mechanism_, random), random)) ==
+                reference)
+        << i;
 }
 
 TEST_P(VerdictOf, HoldsAtDrawingPrecision) {
