@@ -12,6 +12,7 @@ constexpr double kShort = 0.03;        // first step: tangents still tell branch
 constexpr double kStraight = 0.15;     // of a step: a smooth manifold leaves its tangent no further
 constexpr int kQuick = 10;  // Newton iterations; more after a short step mean that it ended where
                             // a freedom that does not continue is still instantaneous
+constexpr double kPolished = 0.1;      // of a closure error: less is left at a double zero only
 constexpr double kCrossed = 0.4;       // of a long step
 constexpr double kTurned = 0.6;        // sine of the angle a tangent space turns on a long step
 constexpr double kNearSingular = 0.1;  // of the smallest singular value one step before
@@ -64,6 +65,7 @@ class Explorer {
   bool wander(Place& place, double length);
   bool leap(Posture& posture, const Eigen::VectorXd& rates);
   bool leave_smoothly(const Eigen::MatrixXd& kernel);
+  [[nodiscard]] std::vector<Eigen::VectorXd> translations(const Eigen::MatrixXd& kernel);
   void leave_by_second_order(const Eigen::MatrixXd& kernel);
   void meet(const Place& near);
   bool is_shaky(Branch& branch, const Place& near);
@@ -75,6 +77,7 @@ class Explorer {
   WalkOptions options_;
   std::mt19937_64& random_;
   std::vector<int> active_;
+  bool slow_ = false;  ///< a step ended where a freedom that does not continue is instantaneous
   Departure result_;
 };
 
@@ -96,7 +99,11 @@ double Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double len
   Posture there = posture;
   const Projection projection = step_along(model_, there, active_, along, length);
   if (projection.residual > options_.closure) return -1;
-  if (quickly && projection.iterations > kQuick) return -1;
+  bool slow = projection.iterations > kQuick;
+  if (slow || projection.linear)
+    slow = polish(model_, there, active_) < kPolished * projection.residual || slow;
+  if (quickly && slow) return -1;
+  slow_ = slow_ || slow;
   posture = std::move(there);
   result_.residual = std::max(result_.residual, projection.residual);
   return displacement(model_, straight, posture) / length;
@@ -159,17 +166,22 @@ bool Explorer::is_shaky(Branch& branch, const Place& near) {
   for (const auto& component : allowed.components)
     directions.insert(directions.end(), component.begin(), component.end());
   if (!directions.empty()) find_span(branch, directions);
-  if (branch.excess > 0) branch.far = {near};
+  if (branch.excess > 0) branch.far = {{near.posture, freedoms_at(model_, near.posture)}};
   return branch.excess > 0;
 }
 
 /// From a short step away to generic postures; whether any walk got on.
 bool Explorer::walk_far(Branch& branch, const Place& near) {
   bool moved = false;
+  slow_ = false;
   for (int walk = 0; walk < options_.walks; ++walk) {
     branch.far.push_back(near);
     moved = go_on(branch.far.back()) || moved;
   }
+  if (!slow_) return moved;
+  const Place& last = branch.far.back();
+  Branch shaky{kernel_of(last.free), {}, {}, 0};
+  if (is_shaky(shaky, last)) branch = std::move(shaky);
   return moved;
 }
 
@@ -197,6 +209,7 @@ bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
     }
     // Where no walk gets on, a condition of higher order was too small to be seen so close.
     if (!walk_far(branch, {std::move(posture), std::move(free)})) return false;
+    if (slow_) return false;
     result_.branches.push_back(std::move(branch));
     return true;
   }
@@ -224,25 +237,44 @@ bool Explorer::leap(Posture& posture, const Eigen::VectorXd& rates) {
   Posture there = posture;
   advance(model_, there, increments.cwiseProduct(freedom_scale(model_)));
   if (project(model_, there, active_).residual > options_.closure) return false;
+  polish(model_, there, active_);
   if (displacement(model_, posture, there) < kLeapt * kLong) return false;
   posture = std::move(there);
   return true;
+}
+
+/// Directions in which the platform does not turn. Where conditions of higher order hide the ways
+/// out, a translation is the one that random directions hardly meet.
+std::vector<Eigen::VectorXd> Explorer::translations(const Eigen::MatrixXd& kernel) {
+  const Eigen::MatrixXd turning = platform_motion(model_, home_, kernel).topRows(3);
+  const Eigen::MatrixXd basis = polyglide::kernel_of(turning, 1).basis;
+  std::vector<Eigen::VectorXd> directions;
+  for (std::size_t i = 0; i < kTries && basis.cols() > 0; ++i)
+    directions.push_back((basis * random_direction(random_, basis.cols())).normalized());
+  return directions;
 }
 
 /// Every component of the second-order solution is tried along a few of its members, each way: a
 /// cusp, for example, can be left one way only. Where that sets no condition although home is not
 /// smooth, or leads nowhere, conditions of higher order are at work and leaps have to find the way.
 void Explorer::leave_by_second_order(const Eigen::MatrixXd& kernel) {
-  const SecondOrder allowed = second_order(model_, home_, kernel, active_, random_);
+  SecondOrder allowed = second_order(model_, home_, kernel, active_, random_);
   result_.obstructions = allowed.obstructions;
   result_.refuted = allowed.components.empty();
+  if (slow_) allowed.components.push_back(translations(kernel));
   for (const auto& component : allowed.components) {
     if (allowed.obstructions == 0) break;
     bool left = false;
     for (std::size_t i = 0; i < std::min(kTries, component.size()) && !left; ++i)
       for (const int side : {1, -1}) {
         Posture near = home_;
+        slow_ = false;
         if (left || step(near, side * (kernel * component[i]), kShort) < 0) continue;
+        if (slow_) {
+          // Close to home the conditions that stop a freedom may be too weak to be met well.
+          Posture farther = home_;
+          if (leap(farther, side * (kernel * component[i]))) near = std::move(farther);
+        }
         const Freedoms free = freedoms_at(model_, near, Certainty::screened);
         if (span_of(component) > kernel_of(free).cols()) result_.cone = true;
         meet({std::move(near), free});

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <optional>
 
+#include "kinematics/rank.hpp"
+
 namespace polyglide {
 namespace {
 
@@ -13,6 +15,10 @@ constexpr double kCloseEnough = 1e-7;  // when Newton has stagnated: loops of a 
                                        // with redundant constraints close no better
 constexpr double kNear = 1e-6;  // residual from which the last linearisation takes Newton home
 constexpr int kMostIterations = 40;
+constexpr int kPolishes = 6;
+constexpr double kWeakest = 1e-9;  // of the largest singular value: less is rounding
+constexpr double kLate = 1e-3;     // residual below which Newton at a regular posture at least
+constexpr double kLinear = 0.05;   // divides it by twenty each time
 constexpr int kPatience = 3;          // iterations without progress before Newton gives up
 constexpr double kProgress = 0.7;     // part of the best residual so far that counts as progress
 constexpr double kLongestStep = 0.6;  // [rad] of the fastest joint, keeps Newton on its branch
@@ -89,7 +95,7 @@ Projection pull_back(const Model& model, Posture& posture, const std::vector<int
                      const Goal& goal, const Eigen::VectorXd* pin) {
   Projection result;
   if (model.loop_joints.empty() && !goal) return {true, 0, 0};
-  double best = std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::infinity(), last = best;
   int idle = 0;
   std::optional<Linearised> linearised;
   for (;; ++result.iterations) {
@@ -99,6 +105,8 @@ Projection pull_back(const Model& model, Posture& posture, const std::vector<int
     if (result.residual < kClosed || result.iterations == kMostIterations ||
         !(result.residual < 1e3))
       break;
+    result.linear = last < kLate && result.residual > kLinear * last;
+    last = result.residual;
     idle = result.residual < kProgress * best ? 0 : idle + 1;
     best = std::min(best, result.residual);
     if (idle >= kPatience && (pin != nullptr || best < kCloseEnough)) break;
@@ -141,6 +149,37 @@ Eigen::MatrixXd columns(const Eigen::MatrixXd& matrix, const std::vector<int>& a
 Projection project(const Model& model, Posture& posture, const std::vector<int>& active,
                    const Goal& goal) {
   return pull_back(model, posture, active, goal, nullptr);
+}
+
+namespace {
+
+/// The least motion of the active freedoms that meets the loops' closure error to first order, weak
+/// directions included, which the damped normal equations leave out.
+Eigen::VectorXd undamped_step(const Model& model, const Posture& posture,
+                              const std::vector<int>& active) {
+  const Svd svd = svd_of(columns(closure_jacobian(model, posture), active));
+  const Eigen::Index kept = (svd.values.array() > kWeakest * svd.values[0]).count();
+  const Eigen::VectorXd parts = svd.u.leftCols(kept).transpose() * closure_residual(model, posture);
+  return -svd.v.leftCols(kept) * parts.cwiseQuotient(svd.values.head(kept));
+}
+
+}  // namespace
+
+double polish(const Model& model, Posture& posture, const std::vector<int>& active) {
+  if (model.loop_joints.empty()) return 0;
+  Posture best = posture;
+  double least = closure_residual(model, posture).cwiseAbs().maxCoeff();
+  for (int i = 0; i < kPolishes; ++i) {
+    // Plain steps meet what Newton's method meets at once, doubled ones the double zeros.
+    for (const double times : {1.0, 2.0, 1.0})
+      move(model, posture, active, times * undamped_step(model, posture, active));
+    const double residual = closure_residual(model, posture).cwiseAbs().maxCoeff();
+    if (!(residual < least)) break;
+    least = residual;
+    best = posture;
+  }
+  posture = std::move(best);
+  return least;
 }
 
 Eigen::VectorXd tangent(const Model& model, const Posture& posture, const std::vector<int>& active,

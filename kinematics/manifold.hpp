@@ -20,6 +20,7 @@ struct Projection {
   bool closed = false;
   double residual = 0;  ///< largest closure error [rad, or length/size]
   int iterations = 0;
+  bool linear = false;  ///< it crept up on the end: a double zero, or noise of a drawing
 };
 
 /// A demand beside loop closure: appends its scaled residual and the rows of its
@@ -39,6 +40,11 @@ using Goal = std::function<Demand(const Posture& posture, const Eigen::MatrixXd&
 /// With a goal: onto the part of the manifold where the goal holds too.
 [[nodiscard]] Projection project(const Model& model, Posture& posture,
                                  const std::vector<int>& active, const Goal& goal = {});
+
+/// Takes a closed posture as near to a double zero of the loops' closure as rounding allows
+/// (1e-8 where the closure error is 1e-16): Newton's method comes nearer by halves only, and leaves
+/// the rank there in doubt. Returns the closure error left.
+double polish(const Model& model, Posture& posture, const std::vector<int>& active);
 
 /// The part of `direction` (scaled, one entry per active freedom) that keeps the
 /// loops closed to first order, with its largest entry scaled to 1; zero when
