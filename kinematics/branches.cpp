@@ -12,6 +12,7 @@ constexpr double kShort = 0.03;        // first step: tangents still tell branch
 constexpr double kStraight = 0.15;     // of a step: a smooth manifold leaves its tangent no further
 constexpr int kQuick = 10;  // Newton iterations; more after a short step mean that it ended where
                             // a freedom that does not continue is still instantaneous
+constexpr double kClear = 1e5;         // a rank gap below it tells no shaky freedoms
 constexpr double kPolished = 0.1;      // of a closure error: less is left at a double zero only
 constexpr double kCrossed = 0.4;       // of a long step
 constexpr double kTurned = 0.6;        // sine of the angle a tangent space turns on a long step
@@ -157,6 +158,7 @@ bool Explorer::wander(Place& place, double length) {
 /// Where a random step does not go straight on, some freedoms are never more than instantaneous,
 /// and second order counts the rest.
 bool Explorer::is_shaky(Branch& branch, const Place& near) {
+  if (near.free.rank.gap < kClear) return false;
   Posture posture = near.posture;
   const double bend = step(posture, even_mixture(branch.near_kernel, random_), kShort, true);
   if (bend >= 0 && bend < kStraight) return false;
@@ -223,7 +225,9 @@ void Explorer::meet(const Place& near) {
            separation(other.near_kernel, branch.near_kernel) < kSameBranch;
   });
   if (known) return;
-  if (!is_shaky(branch, near)) walk_far(branch, near);
+  const bool moves = is_shaky(branch, near) || walk_far(branch, near);
+  // Closed by chance where home is singular to a high order, with counts that say nothing.
+  if (!moves && near.free.rank.gap < kClear) return;
   result_.branches.push_back(std::move(branch));
 }
 
@@ -237,7 +241,7 @@ bool Explorer::leap(Posture& posture, const Eigen::VectorXd& rates) {
   Posture there = posture;
   advance(model_, there, increments.cwiseProduct(freedom_scale(model_)));
   if (project(model_, there, active_).residual > options_.closure) return false;
-  polish(model_, there, active_);
+  const double left = polish(model_, there, active_);
   if (displacement(model_, posture, there) < kLeapt * kLong) return false;
   posture = std::move(there);
   return true;
