@@ -23,6 +23,10 @@ constexpr double kNearlyClosed = 1e-7;
 constexpr double kLeapt = 0.3;  // of a leap: a posture nearer to home has fallen back
 constexpr std::size_t kTries = 3;  // members of a component of directions that are tried
 
+/// What a step may be like: any that closes, one that does not bend much, or one as on smooth
+/// manifolds, straight and with Newton's method back at once.
+enum class Way { any, gentle, straight };
+
 /// Sine of the largest angle from the smaller space to the larger.
 double separation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   const Eigen::MatrixXd small = orthonormal(a.cols() <= b.cols() ? a : b);
@@ -58,10 +62,9 @@ class Explorer {
   /// The active freedoms' part of scaled rates that keep the loops closed, the fastest 1; zero
   /// when there is none.
   [[nodiscard]] Eigen::VectorXd paced(const Eigen::VectorXd& rates) const;
-  /// A step along scaled rates of all freedoms, out of the kernel there. How far the manifold was
-  /// left of the straight way, as part of the step; negative when there was no way.
-  /// @param quickly only a way on which Newton's method finds back at once, as on smooth manifolds
-  double step(Posture& posture, const Eigen::VectorXd& rates, double length, bool quickly = false);
+  /// A step along scaled rates of all freedoms, out of the kernel there; false, and the posture
+  /// unchanged, when there is no such way.
+  bool step(Posture& posture, const Eigen::VectorXd& rates, double length, Way way);
   [[nodiscard]] Eigen::MatrixXd kernel_of(const Freedoms& free) const;
   bool wander(Place& place, double length);
   bool leap(Posture& posture, const Eigen::VectorXd& rates);
@@ -89,25 +92,26 @@ Eigen::VectorXd Explorer::paced(const Eigen::VectorXd& rates) const {
   return along / fastest;
 }
 
-double Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double length,
-                      bool quickly) {
+bool Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double length, Way way) {
   const Eigen::VectorXd along = paced(rates);
-  if (along.isZero()) return -1;
+  if (along.isZero()) return false;
   Posture straight = posture;
   Eigen::VectorXd increments = Eigen::VectorXd::Zero(rates.size());
   increments(active_) = length * along;
   advance(model_, straight, increments.cwiseProduct(freedom_scale(model_)));
   Posture there = posture;
   const Projection projection = step_along(model_, there, active_, along, length);
-  if (projection.residual > options_.closure) return -1;
   bool slow = projection.iterations > kQuick;
+  if (projection.residual > options_.closure || (slow && way == Way::straight)) return false;
+  const double most = way == Way::straight ? kStraight : kCrossed;
+  if (way != Way::any && displacement(model_, straight, there) > most * length) return false;
   if (slow || projection.linear)
     slow = polish(model_, there, active_) < kPolished * projection.residual || slow;
-  if (quickly && slow) return -1;
+  if (slow && way == Way::straight) return false;
   slow_ = slow_ || slow;
   posture = std::move(there);
   result_.residual = std::max(result_.residual, projection.residual);
-  return displacement(model_, straight, posture) / length;
+  return true;
 }
 
 Eigen::MatrixXd Explorer::kernel_of(const Freedoms& free) const {
@@ -143,8 +147,7 @@ bool Explorer::wander(Place& place, double length) {
   const Eigen::VectorXd rates = kernel * random_direction(random_, kernel.cols());
   for (int halving = 0; halving < 4; ++halving, length /= 2) {
     Posture posture = place.posture;
-    const double bend = step(posture, rates, length);
-    if (bend < 0 || bend > kCrossed) continue;
+    if (!step(posture, rates, length, Way::gentle)) continue;
     Freedoms free = freedoms_at(model_, posture, Certainty::screened);
     if (free.rank.smallest < kNearSingular * place.free.rank.smallest) continue;
     const Eigen::MatrixXd there = kernel_of(free);
@@ -160,8 +163,7 @@ bool Explorer::wander(Place& place, double length) {
 bool Explorer::is_shaky(Branch& branch, const Place& near) {
   if (near.free.rank.gap < kClear) return false;
   Posture posture = near.posture;
-  const double bend = step(posture, even_mixture(branch.near_kernel, random_), kShort, true);
-  if (bend >= 0 && bend < kStraight) return false;
+  if (step(posture, even_mixture(branch.near_kernel, random_), kShort, Way::straight)) return false;
   const SecondOrder allowed =
       second_order(model_, near.posture, branch.near_kernel, active_, random_);
   std::vector<Eigen::VectorXd> directions;
@@ -198,16 +200,14 @@ bool Explorer::go_on(Place& place) {
 bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
   for (const double length : {kShort, kShort / 4}) {
     Posture posture = home_;
-    const double bend = step(posture, even_mixture(kernel, random_), length, true);
-    if (bend < 0 || bend > kStraight) continue;
+    if (!step(posture, even_mixture(kernel, random_), length, Way::straight)) continue;
     Freedoms free = freedoms_at(model_, posture, Certainty::screened);
     Branch branch{kernel_of(free), {}, {}, 0};
     if (branch.near_kernel.cols() != kernel.cols()) return false;
     // One mixture may happen to hold little of a freedom that does not continue.
     for (int more = 1; more < options_.walks; ++more) {
       Posture other = home_;
-      const double bend_too = step(other, even_mixture(kernel, random_), length, true);
-      if (bend_too < 0 || bend_too > kStraight) return false;
+      if (!step(other, even_mixture(kernel, random_), length, Way::straight)) return false;
     }
     // Where no walk gets on, a condition of higher order was too small to be seen so close.
     if (!walk_far(branch, {std::move(posture), std::move(free)})) return false;
@@ -240,8 +240,9 @@ bool Explorer::leap(Posture& posture, const Eigen::VectorXd& rates) {
   increments(active_) = kLong * along;
   Posture there = posture;
   advance(model_, there, increments.cwiseProduct(freedom_scale(model_)));
-  if (project(model_, there, active_).residual > options_.closure) return false;
-  const double left = polish(model_, there, active_);
+  const Projection projection = project(model_, there, active_);
+  if (projection.residual > options_.closure) return false;
+  if (projection.linear) polish(model_, there, active_);
   if (displacement(model_, posture, there) < kLeapt * kLong) return false;
   posture = std::move(there);
   return true;
@@ -273,7 +274,7 @@ void Explorer::leave_by_second_order(const Eigen::MatrixXd& kernel) {
       for (const int side : {1, -1}) {
         Posture near = home_;
         slow_ = false;
-        if (left || step(near, side * (kernel * component[i]), kShort) < 0) continue;
+        if (left || !step(near, side * (kernel * component[i]), kShort, Way::any)) continue;
         if (slow_) {
           // Close to home the conditions that stop a freedom may be too weak to be met well.
           Posture farther = home_;

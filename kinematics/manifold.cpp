@@ -5,8 +5,6 @@
 #include <numeric>
 #include <optional>
 
-#include "kinematics/rank.hpp"
-
 namespace polyglide {
 namespace {
 
@@ -16,7 +14,7 @@ constexpr double kCloseEnough = 1e-7;  // when Newton has stagnated: loops of a 
 constexpr double kNear = 1e-6;  // residual from which the last linearisation takes Newton home
 constexpr int kMostIterations = 40;
 constexpr int kPolishes = 6;
-constexpr double kWeakest = 1e-9;  // of the largest singular value: less is rounding
+constexpr double kWeakest = 1e-9;  // of the largest pivot: less is rounding
 constexpr double kLate = 1e-3;     // residual below which Newton at a regular posture at least
 constexpr double kLinear = 0.05;   // divides it by twenty each time
 constexpr int kPatience = 3;          // iterations without progress before Newton gives up
@@ -157,10 +155,10 @@ namespace {
 /// directions included, which the damped normal equations leave out.
 Eigen::VectorXd undamped_step(const Model& model, const Posture& posture,
                               const std::vector<int>& active) {
-  const Svd svd = svd_of(columns(closure_jacobian(model, posture), active));
-  const Eigen::Index kept = (svd.values.array() > kWeakest * svd.values[0]).count();
-  const Eigen::VectorXd parts = svd.u.leftCols(kept).transpose() * closure_residual(model, posture);
-  return -svd.v.leftCols(kept) * parts.cwiseQuotient(svd.values.head(kept));
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
+  factors.setThreshold(kWeakest);
+  factors.compute(columns(closure_jacobian(model, posture), active));
+  return -factors.solve(closure_residual(model, posture));
 }
 
 }  // namespace
