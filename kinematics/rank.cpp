@@ -97,16 +97,16 @@ constexpr double kSurelyReal = 1e-5, kSurelyNoise = 1e-10;  // of the largest pi
 
 /// Kernel from the pivoted QR decomposition of the transpose: the rows' span is Q's first columns.
 /// nullopt where a pivot leaves doubt.
-std::optional<Kernel> kernel_by_pivots(const Eigen::MatrixXd& matrix) {
+std::optional<Kernel> kernel_by_pivots(const Eigen::MatrixXd& matrix, double reference) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix.transpose());
   const Eigen::VectorXd pivots = qr.matrixQR().diagonal().cwiseAbs();
-  const double top = pivots[0];
+  const double top = std::max(pivots[0], reference);
   if (!(top > 0)) return std::nullopt;
   const bool sure = std::ranges::all_of(pivots, [top](double pivot) {
     return pivot > kSurelyReal * top || pivot < kSurelyNoise * top;
   });
   if (!sure) return std::nullopt;
-  Kernel kernel{decide_rank(pivots), {}};
+  Kernel kernel{decide_rank(pivots, reference), {}};
   const Eigen::Index left = matrix.cols() - kernel.decision.rank;
   kernel.basis = Eigen::MatrixXd::Zero(matrix.cols(), left);
   kernel.basis.bottomRows(left).setIdentity();
@@ -126,17 +126,17 @@ Kernel kernel_of_nothing(Eigen::Index cols) {
 Kernel kernel_of(const Eigen::MatrixXd& matrix, double reference) {
   if (matrix.size() == 0) return kernel_of_nothing(matrix.cols());
   const RankDecision decision = decide_rank(singular_values(matrix), reference);
-  if (auto kernel = kernel_by_pivots(matrix); kernel && kernel->decision.rank == decision.rank) {
+  if (auto kernel = kernel_by_pivots(matrix, reference); kernel && kernel->decision.rank == decision.rank) {
     kernel->decision = decision;
     return *std::move(kernel);
   }
   return {decision, svd_of(matrix).v.rightCols(matrix.cols() - decision.rank)};
 }
 
-Kernel screened_kernel(const Eigen::MatrixXd& matrix) {
+Kernel screened_kernel(const Eigen::MatrixXd& matrix, double reference) {
   if (matrix.size() == 0) return kernel_of_nothing(matrix.cols());
-  if (auto kernel = kernel_by_pivots(matrix)) return *std::move(kernel);
-  return kernel_of(matrix);
+  if (auto kernel = kernel_by_pivots(matrix, reference)) return *std::move(kernel);
+  return kernel_of(matrix, reference);
 }
 
 RankDecision rank_of(const Eigen::MatrixXd& matrix, double reference) {

@@ -70,7 +70,7 @@ struct Kernel {
 /// between 1e-10 and 1e-5 of the largest pivot): for postures on the way, which no verdict rests
 /// on. `gap` and `smallest` are then those of the pivots.
 /// Cost: about 8 µs for 18×20.
-[[nodiscard]] Kernel screened_kernel(const Eigen::MatrixXd& matrix);
+[[nodiscard]] Kernel screened_kernel(const Eigen::MatrixXd& matrix, double reference = 0);
 
 /// Singular values only.
 [[nodiscard]] RankDecision rank_of(const Eigen::MatrixXd& matrix, double reference = 0);

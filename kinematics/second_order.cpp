@@ -1,6 +1,7 @@
 #include "kinematics/second_order.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "kinematics/manifold.hpp"
 #include "kinematics/rank.hpp"
@@ -110,15 +111,20 @@ Eigen::MatrixXd tangent_projector(const std::vector<Eigen::MatrixXd>& forms,
   Eigen::MatrixXd slopes(forms.size(), at.size());
   for (std::size_t i = 0; i < forms.size(); ++i)
     slopes.row(static_cast<Eigen::Index>(i)) = (forms[i] * at).transpose();
-  const Eigen::MatrixXd basis = kernel_of(slopes, 1).basis;
+  const Eigen::MatrixXd basis = screened_kernel(slopes, 1).basis;
   return basis * basis.transpose();
 }
 
-/// A component of solutions, known by its first member and the tangent space there.
-struct Component {
-  Eigen::VectorXd member;
+/// A solution and the directions in which it continues.
+struct Solution {
+  Eigen::VectorXd at;
   Eigen::MatrixXd tangent;  ///< projector
-  bool linear = false;      ///< the whole tangent space consists of solutions
+};
+
+/// A component of solutions, known by members of it.
+struct Component {
+  std::vector<Solution> members;
+  bool linear = false;  ///< the whole tangent space of a member consists of solutions
 };
 
 /// Whether all forms vanish on the space a projector projects to: P A P = 0.
@@ -128,31 +134,37 @@ bool vanish_on(const std::vector<Eigen::MatrixXd>& forms, const Eigen::MatrixXd&
   });
 }
 
-/// Whether a solution belongs to a component, as far as a straight way between them shows. In a
+/// Whether the straight way between two solutions, pulled onto the solutions at so many places,
+/// stays among them while the tangent space turns gently.
+bool leads(const std::vector<Eigen::MatrixXd>& forms, const Solution& from,
+           const Eigen::VectorXd& to, int steps) {
+  constexpr double kTurn = 0.3;  // of a projector between neighbours, Frobenius norm
+  Eigen::MatrixXd before = from.tangent;
+  for (int i = 1; i <= steps; ++i) {
+    const double part = static_cast<double>(i) / steps;
+    Eigen::VectorXd at = (1 - part) * from.at + part * to;
+    if (!solve(forms, at)) return false;
+    const Eigen::MatrixXd here = tangent_projector(forms, at);
+    if ((here - before).norm() >= kTurn) return false;
+    before = here;
+  }
+  return true;
+}
+
+/// Whether a solution belongs to a component, as far as a way from its nearest member shows. In a
 /// linear one it lies in the tangent space of any member, and on it all forms stay zero.
 bool belongs(const std::vector<Eigen::MatrixXd>& forms, const Component& component,
              const Eigen::VectorXd& to) {
   constexpr double kInside = 1e-4;
-  constexpr double kTurn = 0.3;  // of a projector between neighbours, Frobenius norm
-  if ((to - component.tangent * to).norm() < kInside) return true;
+  constexpr double kStride = 0.2;  // of the unit sphere's radius
+  const Solution& first = component.members.front();
+  if ((to - first.tangent * to).norm() < kInside) return true;
   if (component.linear) return false;
-  const Eigen::VectorXd& from = component.member;
-  const Eigen::VectorXd target = from.dot(to) < 0 ? Eigen::VectorXd(-to) : to;
-  for (const int steps : {8, 32}) {
-    Eigen::MatrixXd before = component.tangent;
-    bool through = true;
-    for (int i = 1; i <= steps && through; ++i) {
-      const double part = static_cast<double>(i) / steps;
-      Eigen::VectorXd at = (1 - part) * from + part * target;
-      through = solve(forms, at);
-      if (!through) break;
-      const Eigen::MatrixXd here = tangent_projector(forms, at);
-      through = (here - before).norm() < kTurn;
-      before = here;
-    }
-    if (through) return true;
-  }
-  return false;
+  const auto nearness = [&](const Solution& member) { return std::abs(member.at.dot(to)); };
+  const Solution& nearest = *std::ranges::max_element(component.members, {}, nearness);
+  const Eigen::VectorXd target = nearest.at.dot(to) < 0 ? Eigen::VectorXd(-to) : to;
+  const int steps = static_cast<int>(std::ceil((target - nearest.at).norm() / kStride));
+  return leads(forms, nearest, target, steps) || leads(forms, nearest, target, 4 * steps);
 }
 
 }  // namespace
@@ -187,12 +199,12 @@ SecondOrder second_order(const Model& model, const Posture& posture, const Eigen
     if (!solve(reduced, zero)) continue;
     std::size_t place = 0;
     while (place < known.size() && !belongs(reduced, known[place], zero)) ++place;
+    Eigen::MatrixXd tangent = tangent_projector(reduced, zero);
     if (place == known.size()) {
-      Eigen::MatrixXd tangent = tangent_projector(reduced, zero);
-      const bool linear = vanish_on(reduced, tangent);
-      known.push_back({zero, std::move(tangent), linear});
+      known.push_back({{}, vanish_on(reduced, tangent)});
       result.components.emplace_back();
     }
+    known[place].members.push_back({zero, std::move(tangent)});
     const Eigen::VectorXd more = random_direction(random, loose.cols());
     result.components[place].push_back((bound * zero + loose * more).normalized());
   }
