@@ -65,6 +65,7 @@ class Explorer {
   /// A step along scaled rates of all freedoms, out of the kernel there; false, and the posture
   /// unchanged, when there is no such way.
   bool step(Posture& posture, const Eigen::VectorXd& rates, double length, Way way);
+  bool closes(const Projection& projection);
   [[nodiscard]] Eigen::MatrixXd kernel_of(const Freedoms& free) const;
   bool wander(Place& place, double length);
   bool leap(Posture& posture, const Eigen::VectorXd& rates);
@@ -82,6 +83,7 @@ class Explorer {
   std::mt19937_64& random_;
   std::vector<int> active_;
   bool slow_ = false;  ///< a step ended where a freedom that does not continue is instantaneous
+  bool nearly_ = false;  ///< a way was turned down that closes nearly
   Departure result_;
 };
 
@@ -102,7 +104,7 @@ bool Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double lengt
   Posture there = posture;
   const Projection projection = step_along(model_, there, active_, along, length);
   bool slow = projection.iterations > kQuick;
-  if (projection.residual > options_.closure || (slow && way == Way::straight)) return false;
+  if (!closes(projection) || (slow && way == Way::straight)) return false;
   const double most = way == Way::straight ? kStraight : kCrossed;
   if (way != Way::any && displacement(model_, straight, there) > most * length) return false;
   if (slow || projection.linear)
@@ -112,6 +114,12 @@ bool Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double lengt
   posture = std::move(there);
   result_.residual = std::max(result_.residual, projection.residual);
   return true;
+}
+
+bool Explorer::closes(const Projection& projection) {
+  const bool closed = projection.residual <= options_.closure;
+  nearly_ = nearly_ || (!closed && projection.residual < kNearlyClosed);
+  return closed;
 }
 
 Eigen::MatrixXd Explorer::kernel_of(const Freedoms& free) const {
@@ -241,7 +249,7 @@ bool Explorer::leap(Posture& posture, const Eigen::VectorXd& rates) {
   Posture there = posture;
   advance(model_, there, increments.cwiseProduct(freedom_scale(model_)));
   const Projection projection = project(model_, there, active_);
-  if (projection.residual > options_.closure) return false;
+  if (!closes(projection)) return false;
   if (projection.linear) polish(model_, there, active_);
   if (displacement(model_, posture, there) < kLeapt * kLong) return false;
   posture = std::move(there);
@@ -308,7 +316,7 @@ Departure Explorer::leave(const Eigen::MatrixXd& kernel) {
   // Second order leaves ways open, none of which closes well: nearly a motion. Better a doubtful
   // motion that is said to be so than a machine called rigid.
   const bool open = result_.branches.empty() && !result_.refuted;
-  if (open && options_.closure < kNearlyClosed) {
+  if (open && nearly_ && options_.closure < kNearlyClosed) {
     options_.closure = kNearlyClosed;
     result_ = leave(kernel);
     result_.smooth = false;

@@ -12,6 +12,7 @@ namespace {
 constexpr int kStarts = 24;  // two branches are told with one in ten thousand missed
 constexpr int kIterations = 30;
 constexpr double kSatisfied = 1e-8;  // of a form whose coefficients are about 1
+constexpr double kStuck = 1e-14;     // a step: where slopes vanish without a zero
 constexpr double kPolished = 1e-12;  // double zeros are then met to a millionth
 constexpr double kDamping = 1e-12;
 
@@ -99,7 +100,9 @@ bool solve(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd& start) {
     slopes -= (slopes * start) * start.transpose();
     Eigen::MatrixXd gram = slopes * slopes.transpose();
     gram.diagonal().array() += kDamping;
-    start -= slopes.transpose() * gram.llt().solve(values);
+    const Eigen::VectorXd step = slopes.transpose() * gram.llt().solve(values);
+    if (step.squaredNorm() < kStuck * kStuck) break;
+    start -= step;
   }
   start.normalize();
   return worst < kSatisfied;
