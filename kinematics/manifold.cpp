@@ -14,6 +14,7 @@ constexpr double kCloseEnough = 1e-7;  // when Newton has stagnated: loops of a 
 constexpr double kNear = 1e-6;  // residual from which the last linearisation takes Newton home
 constexpr int kMostIterations = 40;
 constexpr int kPolishes = 6;
+constexpr double kNudge = 0.01;    // a polishing step: more is a drawing's noise taken for meaning
 constexpr double kWeakest = 1e-9;  // of the largest pivot: less is rounding
 constexpr double kLate = 1e-3;     // residual below which Newton at a regular posture at least
 constexpr double kLinear = 0.05;   // divides it by twenty each time
@@ -165,18 +166,20 @@ Eigen::VectorXd undamped_step(const Model& model, const Posture& posture,
 
 double polish(const Model& model, Posture& posture, const std::vector<int>& active) {
   if (model.loop_joints.empty()) return 0;
-  Posture best = posture;
   double least = closure_residual(model, posture).cwiseAbs().maxCoeff();
+  Posture trial = posture;
   for (int i = 0; i < kPolishes; ++i) {
     // Plain steps meet what Newton's method meets at once, doubled ones the double zeros.
-    for (const double times : {1.0, 2.0, 1.0})
-      move(model, posture, active, times * undamped_step(model, posture, active));
-    const double residual = closure_residual(model, posture).cwiseAbs().maxCoeff();
+    for (const double times : {1.0, 2.0, 1.0}) {
+      const Eigen::VectorXd step = times * undamped_step(model, trial, active);
+      if (!(step.norm() < kNudge)) return least;
+      move(model, trial, active, step);
+    }
+    const double residual = closure_residual(model, trial).cwiseAbs().maxCoeff();
     if (!(residual < least)) break;
     least = residual;
-    best = posture;
+    posture = trial;
   }
-  posture = std::move(best);
   return least;
 }
 
