@@ -136,7 +136,7 @@ class Pieces {
         next.at - last.at < 4e-15 * (std::abs(last.at) + std::abs(next.at)) || depth > kDeepest)
       return;
     const double middle = last.at + (next.at - last.at) / 2;
-    const Mark between{middle, function_(middle)};
+    const Mark between{middle, function_(middle, last.sample, next.sample)};
     separate(fine, between, depth + 1);
     fine.push_back(between);
     separate(fine, next, depth + 1);
@@ -189,7 +189,7 @@ class Pieces {
       // s(3 - 2s)s is level at both ends, so that square roots there become smooth.
       const double s = (1 + (i < 8 ? -kNodes[k] : kNodes[k])) / 2;
       const double at = a + width * s * s * (3 - 2 * s);
-      Sample sample = function_(at);
+      Sample sample = function_(at, left, right);
       if (sample.pattern != left.pattern) {
         if (at > a && at < b) run({from, {at, std::move(sample)}, to}, depth + 1);
         return;
@@ -212,7 +212,7 @@ class Pieces {
         spread > 0 ? spread * std::min(1.0, std::pow(200 * difference / spread, 1.5)) : difference;
     const double allowed = tolerance_ / 8 * std::max(std::sqrt(width / range_), 0.02);
     if (leaf.error > allowed && depth < kDeepest && width > 1e-9 * range_) {
-      const Mark middle{a + width / 2, function_(a + width / 2)};
+      const Mark middle{a + width / 2, function_(a + width / 2, left, right)};
       piece_or_run(from, middle, depth + 1);
       piece_or_run(middle, to, depth + 1);
       return;
@@ -245,7 +245,7 @@ class Measurer {
 
  private:
   static constexpr double kShare = 8;  // part of the tolerance that planes take
-  static constexpr int kFirst = 32;    // planes, and lines in each, to begin with
+  static constexpr int kFirst = 32, kLines = 48;  // planes, and lines in each, to begin with
 
   Line line(double x, double y) const {
     Line result;
@@ -261,19 +261,21 @@ class Measurer {
 
   [[nodiscard]] bool spent() const { return lines_ > search_.lines; }
 
-  /// Parts and areas of the plane at x, to an absolute tolerance.
-  Plane plane(double x, double tolerance) const {
+  /// Parts and areas of the plane at x, to an absolute tolerance. @param hints lines to look at
+  /// beside the usual ones: near the tips of a workspace planes cut slivers from it.
+  Plane plane(double x, double tolerance, const std::vector<double>& hints) const {
     Plane result;
     result.x = x;
     if (spent()) return result;
     const double low = extent_.lower.y(), range = extent_.upper.y() - low;
-    const auto at = [&](double y) { return line(x, y); };
+    const auto at = [&](double y, const Line&, const Line&) { return line(x, y); };
     Pieces<Line, decltype(at)> pieces(at, range, tolerance);
+    std::vector<double> places(hints);
+    for (int i = 0; i <= kLines; ++i) places.push_back(low + range * i / kLines);
+    std::ranges::sort(places);
     std::vector<typename Pieces<Line, decltype(at)>::Mark> marks;
-    for (int i = 0; i <= kFirst; ++i) {
-      const double y = low + range * i / kFirst;
-      marks.push_back({y, at(y)});
-    }
+    for (const double y : places)
+      if (marks.empty() || y - marks.back().at > 1e-9 * range) marks.push_back({y, line(x, y)});
     pieces.run(marks);
     pieces.finish();
     result.error = pieces.error;
@@ -339,7 +341,7 @@ class Measurer {
   }
 
   std::optional<ExactMeasure> planar(const Vector3& at) {
-    const Plane whole = plane(0, search_.tolerance * size_);
+    const Plane whole = plane(0, search_.tolerance * size_, {});
     const int part = part_at(whole, at.y(), at.z());
     if (part < 0) return std::nullopt;
     return finished(
@@ -355,12 +357,17 @@ class Measurer {
   std::optional<ExactMeasure> spatial(const Vector3& inside) {
     const double low = extent_.lower.x(), range = extent_.upper.x() - low;
     const double tolerance = search_.tolerance * size_;
-    const auto at = [&](double x) { return plane(x, tolerance / range / kShare); };
+    const auto at = [&](double x, const Plane& before, const Plane& after) {
+      std::vector<double> hints;
+      for (const Plane* near : {&before, &after})
+        for (const Strip& strip : near->strips) hints.push_back(strip.y);
+      return plane(x, tolerance / range / kShare, hints);
+    };
     using PlanePieces = Pieces<Plane, decltype(at)>;
     std::vector<typename PlanePieces::Mark> first(kFirst + 1);
     tbb::parallel_for(0, kFirst + 1, [&](int i) {
       const double x = low + range * i / kFirst;
-      first[i] = {x, at(x)};
+      first[i] = {x, at(x, {}, {})};
     });
     // Stretches of planes, for the threads; each starts where the one before ended.
     std::vector<std::vector<typename PlanePieces::Mark>> stretches(1);
@@ -405,7 +412,7 @@ class Measurer {
     int own = -1;
     for (std::size_t i = 0; i < leaves.size() && own < 0; ++i) {
       if (inside.x() < leaves[i]->a || inside.x() > leaves[i]->b) continue;
-      const Plane here = at(inside.x());
+      const Plane here = at(inside.x(), leaves[i]->left, leaves[i]->right);
       const int part = part_at(here, inside.y(), inside.z());
       if (part >= 0 && part < static_cast<int>(numbers[i].size()))
         own = groups.root(numbers[i][part]);

@@ -61,6 +61,7 @@ void measure_by_quadrature(Workspace& workspace, const Probe& probe, const Regio
   if (!limits) return;
   ExactSearch search;
   search.tolerance = std::min(1e-6, options.accuracy);
+  search.lines = search.tolerance < 1e-6 ? 20'000'000 : 3'000'000;
   const bool flat = limits->dimensions() == 2;
   double& size = flat ? workspace.area : workspace.volume;
   if (region.empty) {

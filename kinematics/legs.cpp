@@ -2,14 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "kinematics/leg_places.hpp"
 
 namespace polyglide {
 namespace {
 
-bool turns_freely(const Joint& joint) {
-  return (joint.type == JointType::universal || joint.type == JointType::spherical) &&
+/// The normal when every joint is a hinge about it or a slide across it.
+std::optional<Vector3> plane_of_motion(const Mechanism& mechanism) {
+  constexpr double kAligned = 1e-9;
+  const auto hinge = std::ranges::find(mechanism.joints, JointType::revolute, &Joint::type);
+  if (hinge == mechanism.joints.end()) return std::nullopt;
+  const Vector3 normal = hinge->axes[0];
+  const bool planar = std::ranges::all_of(mechanism.joints, [&](const Joint& joint) {
+    if (joint.type == JointType::revolute) return joint.axes[0].cross(normal).norm() < kAligned;
+    return joint.type == JointType::prismatic && std::abs(joint.axes[0].dot(normal)) < kAligned;
+  });
+  return planar ? std::optional(normal) : std::nullopt;
+}
+
+/// A rod's end: a ball or a universal joint, in planar machines a hinge.
+bool turns_freely(const Joint& joint, bool planar) {
+  return (joint.type == JointType::universal || joint.type == JointType::spherical ||
+          (planar && joint.type == JointType::revolute)) &&
          joint.driven.empty() &&
          std::all_of(joint.range.begin(), joint.range.end(), [](const Range& range) {
            return std::isinf(range.min) && std::isinf(range.max);
@@ -30,6 +46,7 @@ class Recogniser {
   explicit Recogniser(const Model& model)
       : model_(model),
         mechanism_(model.mechanism),
+        planar_(plane_of_motion(model.mechanism).has_value()),
         joints_of_(mechanism_.bodies.size()),
         used_(mechanism_.joints.size(), false) {
     for (int j = 0; j < static_cast<int>(mechanism_.joints.size()); ++j)
@@ -75,11 +92,11 @@ class Recogniser {
   }
 
   std::optional<Leg> leg_from(int platform_joint) {
-    if (!turns_freely(mechanism_.joints[platform_joint])) return std::nullopt;
+    if (!turns_freely(mechanism_.joints[platform_joint], planar_)) return std::nullopt;
     const int rod = other_body(platform_joint, mechanism_.platform);
     const int next = second_joint(rod, platform_joint);
     if (rod == mechanism_.base || next < 0) return std::nullopt;
-    if (turns_freely(mechanism_.joints[next])) return rod_leg(platform_joint, rod, next);
+    if (turns_freely(mechanism_.joints[next], planar_)) return rod_leg(platform_joint, rod, next);
     if (is_drive(mechanism_.joints[next])) return strut_leg(platform_joint, rod, next);
     return std::nullopt;
   }
@@ -139,7 +156,7 @@ class Recogniser {
   std::optional<Leg> strut_leg(int platform_joint, int upper, int drive_joint) {
     const int lower = other_body(drive_joint, upper);
     const int base_joint = second_joint(lower, drive_joint);
-    if (base_joint < 0 || !turns_freely(mechanism_.joints[base_joint]) ||
+    if (base_joint < 0 || !turns_freely(mechanism_.joints[base_joint], planar_) ||
         other_body(base_joint, lower) != mechanism_.base)
       return std::nullopt;
     Leg leg = leg_between(base_joint, platform_joint, drive_joint);
@@ -165,6 +182,7 @@ class Recogniser {
 
   const Model& model_;
   const Mechanism& mechanism_;
+  bool planar_;
   std::vector<std::vector<int>> joints_of_;
   std::vector<bool> used_;
 };

@@ -357,12 +357,13 @@ void LineLimits::cut_at_singularities(const Vector3& start, std::vector<Span>& s
   thread_local std::vector<Span> kept;
   kept.clear();
   for (const Span& span : spans) {
-    constexpr int kSamples = 12;
+    // Closer at the ends, where the rise of a rod may go with the root of the distance.
+    constexpr int kSamples = 16;
+    const auto place = [&](double i) {
+      return span.from + (span.to - span.from) * (1 - std::cos(M_PI * i / kSamples)) / 2;
+    };
     std::array<double, kSamples + 1> z, f;
-    for (int i = 0; i <= kSamples; ++i) {
-      z[i] = span.from + (span.to - span.from) * i / kSamples;
-      f[i] = at(z[i]);
-    }
+    for (int i = 0; i <= kSamples; ++i) f[i] = at(z[i] = place(i));
     std::array<double, 2 * kSamples> roots;
     int count = 0;
     for (int i = 0; i < kSamples; ++i) {
@@ -376,7 +377,7 @@ void LineLimits::cut_at_singularities(const Vector3& start, std::vector<Span>& s
       const bool turns = f[i] > 0 ? left < 0 && right > 0 : left > 0 && right < 0;
       if (!turns || (f[i - 1] < 0) != (f[i] < 0)) continue;
       const double shift = -(left + right) / (2 * bend);
-      const double lowest = z[i] + shift * (z[i + 1] - z[i]), value = at(lowest);
+      const double lowest = place(i + shift), value = at(lowest);
       if ((value < 0) == (f[i] < 0)) continue;
       const double before = shift < 0 ? z[i - 1] : z[i], f_before = shift < 0 ? f[i - 1] : f[i];
       const double after = shift < 0 ? z[i] : z[i + 1], f_after = shift < 0 ? f[i] : f[i + 1];
