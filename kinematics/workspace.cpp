@@ -10,6 +10,7 @@
 #include "kinematics/certified_volume.hpp"
 #include "kinematics/clearance.hpp"
 #include "kinematics/exact_workspace.hpp"
+#include "kinematics/limits.hpp"
 #include "kinematics/region_boundary.hpp"
 #include "kinematics/region_measure.hpp"
 
@@ -196,6 +197,8 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
   const Evaluator evaluator(machine, options.ignored);
   const int samples = evaluator.closed_form() ? 3 : 1;
   Probe probe(evaluator, orientations_of(machine, options, samples));
+  const bool crosses = is_ignored("singularity", options.ignored);
+  if (crosses) probe.cross_singularities();
   probe.set_counter(counter_for(options, expected_poses(evaluator, probe.orientations())));
   const RegionFineness fineness =
       region_fineness(sampled_accuracy(options), evaluator.closed_form());
@@ -210,7 +213,7 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
                  measure_region(probe, region, fineness, sampled_accuracy(options)));
     const Boundary boundary = find_boundary(probe, region, fineness.bisections);
     result.limits_hit = boundary.limits;
-    if (one && !options.volume_only && probe.dimensions() == 3)
+    if (one && !crosses && !options.volume_only && probe.dimensions() == 3)
       certify(result, evaluator.machine(), options, region, search_bounds(probe));
     result.lower = boundary.extent.lower;
     result.upper = boundary.extent.upper;
