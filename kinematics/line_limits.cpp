@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "kinematics/limits.hpp"
-#include "kinematics/point_legs.hpp"
 #include "kinematics/real_roots.hpp"
 
 namespace polyglide {
@@ -88,22 +87,14 @@ Eigen::Matrix3d turned_frame(const std::array<bool, 3>& active, int dimensions) 
 std::optional<LineLimits> LineLimits::make(const Machine& machine,
                                            const std::vector<std::string>& ignored,
                                            const Eigen::Quaterniond& rotation, const Bounds& box) {
-  if (machine.task.translations < 2) return std::nullopt;
-  const std::optional<LegMachine> legs =
-      machine.legs && machine.task.pure ? machine.legs : point_legs(machine.model);
-  if (!legs) return std::nullopt;
+  if (!machine.legs || !machine.task.pure || machine.task.translations < 2) return std::nullopt;
   if (!late_limit_names(machine.model.mechanism, ignored).empty()) return std::nullopt;
-  const auto counts = [&](const auto& limit) { return !is_ignored(limit.name, ignored); };
-  const Mechanism& mechanism = machine.model.mechanism;
-  if (std::ranges::any_of(mechanism.clearances, counts) ||
-      std::ranges::any_of(mechanism.expressions, counts))
-    return std::nullopt;
   LineLimits result;
   result.dimensions_ = machine.task.translations;
   result.size_ = machine.model.size;
   result.scale_ = machine.task.characteristic_length;
   result.axes_ = machine.task.axes;
-  if (!result.add_rods(machine, *legs, ignored, rotation) ||
+  if (!result.add_rods(machine, ignored, rotation) ||
       !result.add_planes(machine, ignored, rotation))
     return std::nullopt;
   result.drop_repeats();
@@ -111,9 +102,9 @@ std::optional<LineLimits> LineLimits::make(const Machine& machine,
   return result;
 }
 
-bool LineLimits::add_rods(const Machine& machine, const LegMachine& legs,
-                          const std::vector<std::string>& ignored,
+bool LineLimits::add_rods(const Machine& machine, const std::vector<std::string>& ignored,
                           const Eigen::Quaterniond& rotation) {
+  const LegMachine& legs = *machine.legs;
   const Vector3& tool = machine.model.mechanism.tool;
   const auto& joints = machine.model.mechanism.joints;
   drives_.resize(machine.model.drives.size());

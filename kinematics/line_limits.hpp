@@ -21,7 +21,7 @@ struct Span {
 /// workspace is parallel to it but by chance. Planar machines: lines in their plane, x = 0.
 class LineLimits {
  public:
-  /// nullopt for machines without closed form, five-bars excepted; whose rods must agree about a
+  /// nullopt for machines without closed form; whose rods must agree about a
   /// carriage; with cones on cranks, clearances or expressions; or with fewer than two
   /// translations.
   /// @param box limits everything: search_bounds().
@@ -83,8 +83,8 @@ class LineLimits {
   };
 
   LineLimits() = default;
-  bool add_rods(const Machine& machine, const LegMachine& legs,
-                const std::vector<std::string>& ignored, const Eigen::Quaterniond& rotation);
+  bool add_rods(const Machine& machine, const std::vector<std::string>& ignored,
+                const Eigen::Quaterniond& rotation);
   bool add_planes(const Machine& machine, const std::vector<std::string>& ignored,
                   const Eigen::Quaterniond& rotation);
   void add_box(const Machine& machine, const Bounds& box);

@@ -11,6 +11,7 @@
 #include "kinematics/clearance.hpp"
 #include "kinematics/exact_workspace.hpp"
 #include "kinematics/limits.hpp"
+#include "kinematics/point_machine.hpp"
 #include "kinematics/region_boundary.hpp"
 #include "kinematics/region_measure.hpp"
 
@@ -193,6 +194,7 @@ void inscribe(Workspace& result, const Probe& probe, const Inscriber& inscriber)
 }  // namespace
 
 Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& options) {
+  if (const auto point = point_machine(machine)) return compute_workspace(*point, options);
   const auto start = std::chrono::steady_clock::now();
   const Evaluator evaluator(machine, options.ignored);
   const int samples = evaluator.closed_form() ? 3 : 1;

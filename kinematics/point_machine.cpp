@@ -1,7 +1,9 @@
-#include "kinematics/point_legs.hpp"
+#include "kinematics/point_machine.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "kinematics/limits.hpp"
 
 namespace polyglide {
 namespace {
@@ -64,33 +66,48 @@ std::optional<Leg> leg_of(const Model& model, int rod, int tool_joint) {
   return leg.length > kSame * model.size ? std::optional(leg) : std::nullopt;
 }
 
-}  // namespace
-
-std::optional<LegMachine> point_legs(const Model& model) {
+/// The hinge at the tool when everything moves in the plane across it.
+int tool_hinge(const Model& model) {
   const Mechanism& mechanism = model.mechanism;
-  if (mechanism.joints.size() != 5 || model.drives.size() != 2 || !mechanism.limits.empty())
-    return std::nullopt;
-  for (int j = 0; j < 5; ++j) {
+  for (int j = 0; j < static_cast<int>(mechanism.joints.size()); ++j) {
     const Joint& joint = mechanism.joints[j];
-    const Vector3 aside = (mechanism.tool - joint.at).cross(joint.axes[0]);
-    if (!swings(joint) || aside.norm() > kSame * model.size ||
-        std::ranges::count(joint.bodies, mechanism.platform) == 0)
-      continue;
     const Vector3& normal = joint.axes[0];
     const bool planar = std::ranges::all_of(mechanism.joints, [&](const Joint& other) {
-      return other.type == JointType::revolute ? other.axes[0].cross(normal).norm() < kSame
-                                               : other.type == JointType::prismatic &&
-                                                     std::abs(other.axes[0].dot(normal)) < kSame;
+      if (other.type == JointType::revolute) return other.axes[0].cross(normal).norm() < kSame;
+      return other.type == JointType::prismatic && std::abs(other.axes[0].dot(normal)) < kSame;
     });
-    if (!planar) return std::nullopt;
-    LegMachine machine;
-    for (int rod : joint.bodies)
-      if (const auto leg = leg_of(model, rod, j)) machine.legs.push_back(*leg);
-    if (machine.legs.size() != 2) continue;
-    machine.primary = machine.legs[0].drive == 0 ? std::vector<int>{0, 1} : std::vector<int>{1, 0};
-    return machine;
+    const double aside = (mechanism.tool - joint.at).cross(normal).norm();
+    if (swings(joint) && planar && aside < kSame * model.size &&
+        std::ranges::count(joint.bodies, mechanism.platform) > 0)
+      return j;
   }
-  return std::nullopt;
+  return -1;
+}
+
+}  // namespace
+
+std::optional<Machine> point_machine(const Machine& machine) {
+  const Model& model = machine.model;
+  const Mechanism& mechanism = model.mechanism;
+  if (machine.legs || mechanism.joints.size() != 5 || model.drives.size() != 2 ||
+      !mechanism.limits.empty() || !late_limit_names(mechanism).empty())
+    return std::nullopt;
+  const int hinge = tool_hinge(model);
+  if (hinge < 0) return std::nullopt;
+  LegMachine legs;
+  for (int rod : mechanism.joints[hinge].bodies)
+    if (const auto leg = leg_of(model, rod, hinge)) legs.legs.push_back(*leg);
+  if (legs.legs.size() != 2 || legs.legs[0].drive == legs.legs[1].drive) return std::nullopt;
+  legs.primary = legs.legs[0].drive == 0 ? std::vector<int>{0, 1} : std::vector<int>{1, 0};
+  Machine point = machine;
+  point.legs = std::move(legs);
+  point.task = TaskSpace{};
+  point.task.pure = true;
+  point.task.translations = 2;
+  point.task.characteristic_length = machine.task.characteristic_length;
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(mechanism.joints[hinge].axes[0][axis]) < kSame) point.task.axes.push_back(axis);
+  return point.task.axes.size() == 2 ? std::optional(std::move(point)) : std::nullopt;
 }
 
 }  // namespace polyglide
