@@ -4,12 +4,11 @@
 
 #include "cli/commands.hpp"
 #include "cli/machines.hpp"
+#include "cli/pose_indices.hpp"
 #include "cli/print.hpp"
 #include "cli/singularities.hpp"
 #include "kinematics/assembly_modes.hpp"
-#include "kinematics/motion.hpp"
 #include "kinematics/solve.hpp"
-#include "kinematics/stiffness.hpp"
 
 namespace polyglide {
 namespace {
@@ -38,32 +37,14 @@ Eigen::VectorXd read_drives(const std::string& text, const Model& model) {
   return drives;
 }
 
-ordered_json matrix_json(const Eigen::MatrixXd& matrix) {
-  ordered_json rows = ordered_json::array();
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    const Eigen::VectorXd row = matrix.row(i);
-    rows.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  return rows;
-}
-
-/// Jacobian, conditioning and stiffness at a pose that can be taken.
-void add_indices(const Machine& machine, const InverseResult& inverse, const Springs& springs,
-                 bool json, ordered_json& document) {
-  if (!inverse.reachable) return;
-  const auto indices = indices_at(machine, inverse.pose, springs);
-  if (!indices) return;
-  const auto& sigma = indices->singular_values;
-  document["axes"] = axes_name(machine.task.axes);
-  document["jacobian"] = matrix_json(indices->jacobian);
-  document["characteristic_length"] = indices->characteristic_length;
-  document["singular_values"] = std::vector<double>(sigma.begin(), sigma.end());
-  document["condition"] =
-      std::isfinite(indices->condition) ? ordered_json(indices->condition) : ordered_json(nullptr);
-  document["stiffness"] = matrix_json(indices->stiffness);
-  if (json) return;
-  std::cout << fmt::format("  condition number {:.6g} (characteristic length {})\n",
-                           indices->condition, in_mm(indices->characteristic_length));
+/// Adds Jacobian, conditioning and stiffness to a document; the same for people.
+std::string add_indices(const Machine& machine, const Pose& pose, const Eigen::VectorXd& drives,
+                        const std::optional<Posture>& posture, const Springs& springs,
+                        ordered_json& document) {
+  const auto indices = indices_at(machine, pose, drives, posture, springs);
+  if (!indices) return "";
+  add_json(*indices, machine.task, document);
+  return text_of(*indices, springs);
 }
 
 ordered_json inverse(const Machine& machine, const Pose& pose,
@@ -73,10 +54,10 @@ ordered_json inverse(const Machine& machine, const Pose& pose,
   document["drives"] = std::vector<double>(result.drives.begin(), result.drives.end());
   document["limit"] = result.limit.empty() ? ordered_json() : ordered_json(result.limit);
   document["pose"] = pose_json(result.pose);
-  if (json) {
-    add_indices(machine, result, springs, json, document);
-    return document;
-  }
+  std::string indices;
+  if (result.reachable)
+    indices = add_indices(machine, result.pose, result.drives, result.posture, springs, document);
+  if (json) return document;
   std::cout << machine.model.mechanism.name << ": "
             << (result.reachable ? "reachable" : "not reachable: " + result.limit) << "\n";
   if (!result.reachable) return document;
@@ -85,7 +66,7 @@ ordered_json inverse(const Machine& machine, const Pose& pose,
     std::cout << fmt::format(
         "    {:<16} {}\n", drive_name(machine.model, d),
         linear_drive(machine.model, d) ? in_mm(result.drives[d]) : in_degrees(result.drives[d]));
-  add_indices(machine, result, springs, json, document);
+  std::cout << indices;
   return document;
 }
 
@@ -112,10 +93,13 @@ ordered_json completeness_json(const Completeness& completeness) {
       {"stopped", completeness.stopped}};
 }
 
-void print_modes(const Machine& machine, const AssemblyModes& modes, bool all) {
+/// @param indices of every solution, for people.
+void print_modes(const Machine& machine, const AssemblyModes& modes,
+                 const std::vector<std::string>& indices, bool all) {
   std::cout << fmt::format("{}: {} assembly mode(s) found\n", machine.model.mechanism.name,
                            modes.solutions.size());
-  for (const ForwardSolution& solution : modes.solutions) {
+  for (std::size_t i = 0; i < modes.solutions.size(); ++i) {
+    const ForwardSolution& solution = modes.solutions[i];
     std::string notes;
     if (solution.home_mode)
       notes = " (home's assembly mode)";
@@ -124,6 +108,7 @@ void print_modes(const Machine& machine, const AssemblyModes& modes, bool all) {
     if (all && !solution.certified) notes += " (not proved)";
     if (all && solution.region >= 0) notes += fmt::format(" region {}", solution.region + 1);
     std::cout << fmt::format("  pose from home {}{}\n", pose_text(solution.pose), notes);
+    if (!all) std::cout << indices[i];
   }
   const Completeness& completeness = modes.completeness;
   if (!all) return;
@@ -138,8 +123,8 @@ void print_modes(const Machine& machine, const AssemblyModes& modes, bool all) {
         completeness.starts, completeness.stopped, completeness.unseen);
 }
 
-ordered_json forward(const Machine& machine, const std::string& text, bool all, std::uint64_t seed,
-                     bool json) {
+ordered_json forward(const Machine& machine, const std::string& text, bool all,
+                     const Springs& springs, std::uint64_t seed, bool json) {
   AssemblySearch search;
   search.seed = seed;
   const Eigen::VectorXd drives = read_drives(text, machine.model);
@@ -150,55 +135,15 @@ ordered_json forward(const Machine& machine, const std::string& text, bool all, 
     modes.solutions = solve_forward(machine, drives, false, seed);
   ordered_json document{{"name", machine.model.mechanism.name}, {"count", modes.solutions.size()}};
   document["solutions"] = ordered_json::array();
-  for (const ForwardSolution& solution : modes.solutions)
+  std::vector<std::string> indices;
+  for (const ForwardSolution& solution : modes.solutions) {
     document["solutions"].push_back(solution_json(solution));
+    indices.push_back(add_indices(machine, solution.pose, drives, solution.posture, springs,
+                                  document["solutions"].back()));
+  }
   if (all) document["completeness"] = completeness_json(modes.completeness);
-  if (!json) print_modes(machine, modes, all);
+  if (!json) print_modes(machine, modes, indices, all);
   return document;
-}
-
-/// How far what yields is stiff, in words of the command line.
-struct StiffnessOptions {
-  std::vector<double> drives{1.0};
-  double rods = 0, characteristic_length = 0;
-};
-
-void add_stiffness_options(CLI::App& app, CLI::Option* ik, StiffnessOptions& options) {
-  app.add_option("--drive-stiffness", options.drives,
-                 "With --ik: N/m or N m/rad of all drives or of each, for the stiffness matrix")
-      ->delimiter(',')
-      ->needs(ik)
-      ->check(CLI::PositiveNumber);
-  app.add_option("--rod-stiffness", options.rods,
-                 "With --ik: N/m of all rods of a drive together, in series with it")
-      ->needs(ik)
-      ->check(CLI::PositiveNumber);
-  app.add_option("--characteristic-length", options.characteristic_length,
-                 "With --ik: length that makes rotations comparable (file units)")
-      ->needs(ik)
-      ->check(CLI::PositiveNumber);
-}
-
-/// @throws InputError for what does not fit the machine.
-Springs springs_of(const StiffnessOptions& options, const Machine& machine) {
-  const std::size_t drives = machine.model.drives.size();
-  if (options.drives.size() != 1 && options.drives.size() != drives)
-    throw InputError({wrong_argument(
-        fmt::format("{} numbers", options.drives.size()),
-        fmt::format("--drive-stiffness takes one number, or one per drive; {} has {}",
-                    machine.model.mechanism.name, drives))});
-  if (options.rods > 0 && (!machine.legs || machine.task.translations != 3))
-    throw InputError({wrong_argument(
-        fmt::format("{}", options.rods),
-        "--rod-stiffness is for machines whose legs are guides or cranks with rods, or struts, and "
-        "that translate in three directions")});
-  Springs springs;
-  springs.drives = options.drives;
-  if (options.rods > 0) springs.rods = options.rods;
-  if (options.characteristic_length > 0)
-    springs.characteristic_length =
-        options.characteristic_length * machine.model.mechanism.units.metres;
-  return springs;
 }
 
 }  // namespace
@@ -228,7 +173,7 @@ int run_pose(CommandLine& line) {
       .add_flag("--nearest-singularity", questions.nearest,
                 "With --ik: the nearest singular pose, too")
       ->needs(ik_option);
-  add_stiffness_options(line.options(), ik_option, yields);
+  add_stiffness_options(line.options(), yields);
   if (!line.parse()) return kDone;
   if (ik.empty() && fk.empty())
     throw InputError({wrong_argument("", "pose needs --ik x,y,z[,a,b,c] or --fk q1,q2,…")});
@@ -236,12 +181,13 @@ int run_pose(CommandLine& line) {
   std::vector<ordered_json> documents;
   for (const ChosenMachine& chosen : load_machines(options)) {
     const Machine machine = prepare(chosen.mechanism);
+    const Springs springs = springs_of(yields, machine);
     if (ik.empty()) {
-      documents.push_back(forward(machine, fk, all, line.seed(), line.json()));
+      documents.push_back(forward(machine, fk, all, springs, line.seed(), line.json()));
       continue;
     }
     const Pose pose = read_pose(ik, "--ik", chosen.mechanism.units);
-    documents.push_back(inverse(machine, pose, ignored, springs_of(yields, machine), line.json()));
+    documents.push_back(inverse(machine, pose, ignored, springs, line.json()));
     add_singularities(machine, pose, questions, line.seed(), line.json(), documents.back());
   }
   if (line.json()) print_json(one_or_all(std::move(documents)));

@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
-#include "kinematics/evaluate.hpp"
+#include "kinematics/rank.hpp"
 
 namespace polyglide {
 namespace {
+
+constexpr double kSingular = 1e12;  // condition number
 
 bool positive(double value) { return value > 0 && std::isfinite(value); }
 
@@ -24,67 +29,78 @@ void check(const Machine& machine, const Springs& springs) {
   if (!springs.rods) return;
   if (!positive(*springs.rods))
     throw std::invalid_argument("a rod stiffness must be a positive number");
-  if (!machine.legs || machine.task.translations != 3)
-    throw std::invalid_argument(
-        "rod stiffness needs legs of guide, crank or strut with rods, and three translations");
+  if (!knows_rods(machine))
+    throw std::invalid_argument("rod stiffness needs legs of guide, crank or strut with rods");
 }
 
-/// J in SI, from a batch of one.
-std::optional<Eigen::MatrixXd> jacobian_at(const Machine& machine, const Pose& pose) {
-  // Every limit is ignored: what counts is the posture.
-  std::vector<std::string> ignored;
-  const Evaluator named(machine);
-  for (const std::string& name : named.limit_names())
-    if (name != "motion" && name != "not finite" && !name.starts_with("reach"))
-      ignored.push_back(name);
-  const Evaluator evaluator(machine, ignored);
-  PoseBatch batch;
-  batch.x = {pose.position.x()};
-  batch.y = {pose.position.y()};
-  batch.z = {pose.position.z()};
-  batch.rotation = pose.rotation;
-  batch.wanted = Wanted::jacobian | Wanted::condition;
-  batch.instructions = "scalar";
-  BatchResult result;
-  evaluator.evaluate(batch, result);
-  if (result.limit[0] >= 0) return std::nullopt;
-  const auto rows = static_cast<Eigen::Index>(machine.model.drives.size());
-  const auto columns = static_cast<Eigen::Index>(machine.task.axes.size());
-  Eigen::MatrixXd jacobian(rows, columns);
-  for (Eigen::Index d = 0; d < rows; ++d)
-    for (Eigen::Index k = 0; k < columns; ++k) {
-      const double scale = machine.task.axes[k] < 3 ? 1 : machine.task.characteristic_length;
-      jacobian(d, k) = result.jacobian[d * columns + k] * scale;
-    }
-  if (!jacobian.allFinite() || jacobian.isZero(0)) return std::nullopt;
+/// J in SI from one with rotations divided by the machine's characteristic length.
+Eigen::MatrixXd in_si(Eigen::MatrixXd jacobian, const TaskSpace& task) {
+  for (Eigen::Index k = 0; k < jacobian.cols(); ++k)
+    if (task.axes[k] >= 3) jacobian.col(k) *= task.characteristic_length;
   return jacobian;
+}
+
+/// Eigenvalues of the block of the first `count` axes when the others are free to follow.
+std::optional<StiffnessRange> range_of(const Eigen::MatrixXd& stiffness, Eigen::Index count) {
+  if (count == 0) return std::nullopt;
+  const Eigen::Index rest = stiffness.cols() - count;
+  const Eigen::MatrixXd held = stiffness.topLeftCorner(count, count);
+  const Eigen::MatrixXd mixed = stiffness.topRightCorner(count, rest);
+  const Eigen::MatrixXd yielding = held - mixed * stiffness.bottomRightCorner(rest, rest)
+                                                      .completeOrthogonalDecomposition()
+                                                      .solve(mixed.transpose());
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(yielding, Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  return StiffnessRange{std::max(0.0, values.minCoeff()), std::max(0.0, values.maxCoeff())};
+}
+
+void add_conditioning(PoseIndices& result, const TaskSpace& task) {
+  Eigen::MatrixXd scaled = result.jacobian;
+  for (Eigen::Index k = 0; k < scaled.cols(); ++k)
+    if (task.axes[k] >= 3) scaled.col(k) /= result.characteristic_length;
+  result.singular_values = singular_values(scaled);
+  result.condition = condition_number(scaled);
+  if (scaled.rows() < scaled.cols() || !(result.condition < kSingular))
+    result.condition = std::numeric_limits<double>::infinity();
+}
+
+void add_stiffness(PoseIndices& result, const TaskSpace& task, const Eigen::VectorXd& springs) {
+  result.stiffness = result.jacobian.transpose() * springs.asDiagonal() * result.jacobian;
+  result.translation = range_of(result.stiffness, task.translations);
+  result.rotation = range_of(result.stiffness.reverse(), task.rotations);
 }
 
 }  // namespace
 
+bool knows_rods(const Machine& machine) { return machine.legs && machine.task.pure; }
+
 std::optional<PoseIndices> indices_at(const Machine& machine, const Pose& pose,
+                                      const Eigen::VectorXd& drives,
+                                      const std::optional<Posture>& posture,
                                       const Springs& springs) {
   check(machine, springs);
-  const auto jacobian = jacobian_at(machine, pose);
-  if (!jacobian) return std::nullopt;
+  const TaskSpace& task = machine.task;
+  const auto rows = knows_rods(machine) ? leg_rows(machine, pose, drives) : std::nullopt;
   PoseIndices result;
-  result.jacobian = *jacobian;
-  result.characteristic_length =
-      springs.characteristic_length.value_or(machine.task.characteristic_length);
-  Eigen::MatrixXd scaled = *jacobian;
-  for (Eigen::Index k = 0; k < scaled.cols(); ++k)
-    if (machine.task.axes[k] >= 3) scaled.col(k) /= result.characteristic_length;
-  result.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(scaled).singularValues();
-  result.condition = condition_number(scaled);
-  Eigen::VectorXd stiffness(jacobian->rows());
-  for (Eigen::Index d = 0; d < stiffness.size(); ++d) {
-    stiffness[d] = springs.drives[springs.drives.size() == 1 ? 0 : d];
-    // Task axes ascend: the first three are the translations.
-    if (springs.rods)
-      stiffness[d] =
-          1 / (1 / stiffness[d] + jacobian->row(d).head<3>().squaredNorm() / *springs.rods);
+  if (rows) {
+    result.jacobian = (*rows)(Eigen::all, task.axes);
+  } else {
+    const auto general = posture && !springs.rods ? task_jacobian(machine, *posture) : std::nullopt;
+    if (!general) return std::nullopt;
+    result.jacobian = in_si(*general, task);
   }
-  result.stiffness = jacobian->transpose() * stiffness.asDiagonal() * *jacobian;
+  if (!result.jacobian.allFinite() || result.jacobian.cols() == 0) return std::nullopt;
+  result.characteristic_length = springs.characteristic_length.value_or(task.characteristic_length);
+  result.drive_stiffness = springs.drives;
+  if (springs.drives.size() == 1)
+    result.drive_stiffness.assign(machine.model.drives.size(), springs.drives[0]);
+  Eigen::VectorXd series = Eigen::Map<const Eigen::VectorXd>(
+      result.drive_stiffness.data(), static_cast<Eigen::Index>(result.drive_stiffness.size()));
+  for (Eigen::Index d = 0; springs.rods && d < series.size(); ++d)
+    series[d] = 1 / (1 / series[d] + rows->row(d).head<3>().squaredNorm() / *springs.rods);
+  add_conditioning(result, task);
+  add_stiffness(result, task, series);
   return result;
 }
 
