@@ -1,13 +1,15 @@
 #include "kinematics/mode_bounds.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "kinematics/assembly_modes.hpp"
+#include "kinematics/planar.hpp"
 
 namespace polyglide {
 namespace {
 
-constexpr double kSame = 1e-9;  // of the machine's size
+constexpr double kMeet = 1e-9;  // of the machine's size
 
 /// Joints of a serial limb from a platform joint to the base; empty for any other limb.
 std::vector<int> limb_from(const Mechanism& mechanism, int platform_joint) {
@@ -56,7 +58,7 @@ ModeBound of_six_legs(const Machine& machine, const std::vector<int>& legs) {
   for (int index : legs) {
     const Vector3& point = machine.legs->legs[index].platform_point;
     const auto known = std::ranges::find_if(points, [&](const Vector3& other) {
-      return (other - point).norm() < kSame * machine.model.size;
+      return (other - point).norm() < kMeet * machine.model.size;
     });
     if (known != points.end()) {
       ++meeting[known - points.begin()];
@@ -83,21 +85,53 @@ bool about_one_point(const Mechanism& mechanism, double size) {
     const Vector3 between = other.at - joints[0].at;
     const Vector3 centre = joints[0].at + between.cross(b).dot(normal) / normal.squaredNorm() * a;
     return std::ranges::all_of(joints, [&](const Joint& joint) {
-      return (centre - joint.at).cross(joint.axes[0]).norm() < kSame * size;
+      return (centre - joint.at).cross(joint.axes[0]).norm() < kMeet * size;
     });
   }
   return false;
 }
 
-bool in_one_plane(const Mechanism& mechanism) {
-  const auto hinge = std::ranges::find(mechanism.joints, JointType::revolute, &Joint::type);
-  if (hinge == mechanism.joints.end()) return false;
-  return std::ranges::all_of(mechanism.joints, [&](const Joint& joint) {
-    if (joint.type == JointType::revolute)
-      return joint.axes[0].cross(hinge->axes[0]).norm() < kSame;
-    return joint.type == JointType::prismatic &&
-           std::abs(joint.axes[0].dot(hinge->axes[0])) < kSame;
-  });
+bool all_are(const std::vector<const Joint*>& joints, JointType type) {
+  return std::ranges::all_of(joints, [type](const Joint* joint) { return joint->type == type; });
+}
+
+bool parallel(const Joint& a, const Joint& b) { return a.axes[0].cross(b.axes[0]).norm() < kMeet; }
+
+/// What a limb leaves to the platform when its drives are held.
+using Held = std::vector<const Joint*>;
+
+ModeBound of_two_limbs(const Mechanism& mechanism, const std::vector<Held>& limbs) {
+  const auto [fewer, more] = std::minmax(limbs[0].size(), limbs[1].size());
+  const bool hinges =
+      all_are(limbs[0], JointType::revolute) && all_are(limbs[1], JointType::revolute);
+  if (fewer == 1 && more == 2 && hinges && plane_of_motion(mechanism))
+    return {2, "two circles in a plane"};
+  return {};
+}
+
+/// Limbs of a ball that a hinge carries. @param fixed whether no drive turns the hinges.
+ModeBound of_balls_on_circles(const std::vector<Held>& limbs, bool fixed) {
+  const bool alike = std::ranges::all_of(
+      limbs, [&](const Held& limb) { return parallel(*limb[1], *limbs[0][1]); });
+  if (alike && fixed) return {12, "three balls on circles about parallel axes"};
+  return {16, "three balls on circles"};
+}
+
+/// Whether each limb only slides the platform in a plane and turns it about the plane's normal,
+/// the normals being three.
+bool are_planes(const Mechanism& mechanism, const std::vector<Held>& limbs) {
+  Eigen::Matrix3d normals;
+  for (int i = 0; i < 3; ++i) {
+    const Held& limb = limbs[i];
+    if (limb.size() != 3 || !all_are(limb, JointType::revolute) || !parallel(*limb[0], *limb[1]) ||
+        !parallel(*limb[0], *limb[2]))
+      return false;
+    normals.col(i) = limb[0]->axes[0];
+  }
+  return std::abs(normals.determinant()) > 1e-6 &&
+         std::ranges::all_of(mechanism.joints, [](const Joint& joint) {
+           return joint.driven.empty() || joint.type == JointType::prismatic;
+         });
 }
 
 }  // namespace
@@ -106,30 +140,25 @@ ModeBound most_modes(const Machine& machine) {
   if (const std::vector<int> legs = distance_legs(machine); !legs.empty())
     return of_six_legs(machine, legs);
   const Mechanism& mechanism = machine.model.mechanism;
-  const auto limbs = serial_limbs(mechanism);
-  if (limbs.size() != 3) return {};
-  const auto are = [&](std::size_t count, JointType rest, JointType at_platform) {
-    return std::ranges::all_of(limbs, [&](const std::vector<int>& limb) {
-      const auto joints = passive(mechanism, limb);
-      return joints.size() == count && joints.front()->type == at_platform &&
-             std::all_of(joints.begin() + 1, joints.end(),
-                         [&](const Joint* joint) { return joint->type == rest; });
-    });
-  };
-  if (are(2, JointType::revolute, JointType::spherical)) {
-    std::vector<Vector3> axes;
-    for (const auto& limb : limbs) axes.push_back(passive(mechanism, limb)[1]->axes[0]);
-    const bool parallel = std::ranges::all_of(
-        axes, [&](const Vector3& axis) { return axis.cross(axes[0]).norm() < kSame; });
-    // The circles turn with their drives where these come before the hinge.
-    const bool fixed = std::ranges::all_of(limbs, [&](const std::vector<int>& limb) {
-      return mechanism.joints[limb.back()].driven.empty();
-    });
-    if (parallel && fixed) return {12, "three balls on circles about parallel axes"};
-    return {16, "three balls on circles"};
+  std::vector<Held> limbs;
+  bool fixed = true;
+  for (const std::vector<int>& limb : serial_limbs(mechanism)) {
+    limbs.push_back(passive(mechanism, limb));
+    fixed = fixed && mechanism.joints[limb.back()].driven.empty();
   }
-  if (!are(2, JointType::revolute, JointType::revolute)) return {};
-  if (in_one_plane(mechanism)) return {6, "three distances in a plane"};
+  if (limbs.size() == 2) return of_two_limbs(mechanism, limbs);
+  if (limbs.size() != 3) return {};
+  if (are_planes(mechanism, limbs)) return {1, "three planes"};
+  const bool two = std::ranges::all_of(limbs, [](const Held& limb) {
+    return limb.size() == 2 && limb[1]->type == JointType::revolute;
+  });
+  if (!two) return {};
+  const auto at_platform = [&](JointType type) {
+    return std::ranges::all_of(limbs, [&](const Held& limb) { return limb[0]->type == type; });
+  };
+  if (at_platform(JointType::spherical)) return of_balls_on_circles(limbs, fixed);
+  if (!at_platform(JointType::revolute)) return {};
+  if (plane_of_motion(mechanism)) return {6, "three distances in a plane"};
   if (about_one_point(mechanism, machine.model.size)) return {8, "three arms about one point"};
   return {};
 }

@@ -13,21 +13,21 @@
 namespace polyglide {
 namespace {
 
-constexpr double kSingular = 1e12;  // condition number
+constexpr double kWorst = 1e12;  // condition number
 
-bool positive(double value) { return value > 0 && std::isfinite(value); }
+bool is_positive(double value) { return value > 0 && std::isfinite(value); }
 
-void check(const Machine& machine, const Springs& springs) {
+void check_springs(const Machine& machine, const Springs& springs) {
   const std::size_t drives = machine.model.drives.size();
   if (springs.drives.size() != 1 && springs.drives.size() != drives)
     throw std::invalid_argument(fmt::format("{} drive stiffnesses given, the machine has {} drives",
                                             springs.drives.size(), drives));
-  if (!std::ranges::all_of(springs.drives, positive))
+  if (!std::ranges::all_of(springs.drives, is_positive))
     throw std::invalid_argument("a drive stiffness must be a positive number");
-  if (springs.characteristic_length && !positive(*springs.characteristic_length))
+  if (springs.characteristic_length && !is_positive(*springs.characteristic_length))
     throw std::invalid_argument("a characteristic length must be a positive number");
   if (!springs.rods) return;
-  if (!positive(*springs.rods))
+  if (!is_positive(*springs.rods))
     throw std::invalid_argument("a rod stiffness must be a positive number");
   if (!knows_rods(machine))
     throw std::invalid_argument("rod stiffness needs legs of guide, crank or strut with rods");
@@ -41,7 +41,7 @@ Eigen::MatrixXd in_si(Eigen::MatrixXd jacobian, const TaskSpace& task) {
 }
 
 /// Eigenvalues of the block of the first `count` axes when the others are free to follow.
-std::optional<StiffnessRange> range_of(const Eigen::MatrixXd& stiffness, Eigen::Index count) {
+std::optional<StiffnessRange> yielding_range(const Eigen::MatrixXd& stiffness, Eigen::Index count) {
   if (count == 0) return std::nullopt;
   const Eigen::Index rest = stiffness.cols() - count;
   const Eigen::MatrixXd held = stiffness.topLeftCorner(count, count);
@@ -61,14 +61,14 @@ void add_conditioning(PoseIndices& result, const TaskSpace& task) {
     if (task.axes[k] >= 3) scaled.col(k) /= result.characteristic_length;
   result.singular_values = singular_values(scaled);
   result.condition = condition_number(scaled);
-  if (scaled.rows() < scaled.cols() || !(result.condition < kSingular))
+  if (scaled.rows() < scaled.cols() || !(result.condition < kWorst))
     result.condition = std::numeric_limits<double>::infinity();
 }
 
 void add_stiffness(PoseIndices& result, const TaskSpace& task, const Eigen::VectorXd& springs) {
   result.stiffness = result.jacobian.transpose() * springs.asDiagonal() * result.jacobian;
-  result.translation = range_of(result.stiffness, task.translations);
-  result.rotation = range_of(result.stiffness.reverse(), task.rotations);
+  result.translation = yielding_range(result.stiffness, task.translations);
+  result.rotation = yielding_range(result.stiffness.reverse(), task.rotations);
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ std::optional<PoseIndices> indices_at(const Machine& machine, const Pose& pose,
                                       const Eigen::VectorXd& drives,
                                       const std::optional<Posture>& posture,
                                       const Springs& springs) {
-  check(machine, springs);
+  check_springs(machine, springs);
   const TaskSpace& task = machine.task;
   const auto rows = knows_rods(machine) ? leg_rows(machine, pose, drives) : std::nullopt;
   PoseIndices result;
