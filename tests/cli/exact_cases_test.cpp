@@ -34,7 +34,7 @@ void expect_size(std::vector<std::string> words, const std::string& key, double 
   words.insert(words.end(), {"--accuracy", "1e-9"});
   const json fine = answer(words);
   expect_close(fine.at(key).get<double>(), expected, kFine);
-  EXPECT_LE(fine.at("error").get<double>(), kFine * expected);
+  EXPECT_LE(fine.at(key + "_error").get<double>(), kFine * expected);
 }
 
 const std::vector<std::string> kReach{"--ignore-limits", "singularity"};
@@ -111,7 +111,6 @@ TEST(ExactWorkspace, AGoughPlatformWhoseShellsCoincide) {
   }
   const std::string machine = file.in(folder);
   const double expected = exact("gough_congruent_const_orientation").at("value").get<double>();
-  expect_size({machine}, "volume", expected);
   expect_size(with({machine}, kReach), "volume", expected);
   EXPECT_TRUE(answer({"workspace", machine}).at("singular_throughout").get<bool>());
 }
