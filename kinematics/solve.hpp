@@ -17,7 +17,8 @@ struct Machine {
   std::optional<LegMachine> legs;
 };
 
-/// Compiles a mechanism and finds its task space (a short mobility analysis).
+/// Compiles a mechanism and finds its task space (a short mobility analysis). Planar machines of two
+/// freedoms whose tool has both its coordinates free, such as five-bars, are commanded by these.
 [[nodiscard]] Machine prepare(const Mechanism& mechanism);
 
 /// The same for a mechanism whose task space is known, as when only dimensions

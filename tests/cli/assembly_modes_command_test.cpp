@@ -17,7 +17,7 @@ struct ForwardCase {
   std::vector<std::string> set;           ///< more words
   std::vector<double> drives;             ///< from home
   std::vector<Eigen::Isometry3d> places;  ///< of the platform from home, about the base frame
-  bool turned = true;                     ///< whether the rotation is known, too
+  Vector3d tool = Vector3d::Zero();       ///< point at home
 };
 
 Eigen::Isometry3d place_of(const json& solution) {
@@ -38,7 +38,8 @@ ForwardCase six_struts(const json& data, const std::string& name, const Temporar
   ForwardCase made;
   for (const json& solution : data.at("solutions")) made.places.push_back(place_of(solution));
   const Eigen::Isometry3d home = made.places.front();
-  MachineFile file(name, home.translation());
+  made.tool = home.translation();
+  MachineFile file(name, made.tool);
   for (std::size_t i = 0; i < 6; ++i) {
     const Vector3d foot = point(data.at("base")[i]), head = home * point(data.at("platform")[i]);
     file.strut(foot, head);
@@ -65,7 +66,8 @@ ForwardCase planar_struts(const json& data, const std::string& name,
       Vector3d::Zero(), Vector3d(length("d12"), 0, 0),
       Vector3d(x, std::sqrt(std::pow(length("d13"), 2) - x * x), 0)};
   const Eigen::Isometry3d home = made.places.front();
-  MachineFile file(name, home.translation());
+  made.tool = home.translation();
+  MachineFile file(name, made.tool);
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector3d foot = point(data.at("base")[i]), head = home * corners[i];
     file.strut(foot, head, {Vector3d::UnitZ()}, {Vector3d::UnitZ()});
@@ -104,7 +106,8 @@ ForwardCase three_rps(const json& data, const std::string& name, const Temporary
   ForwardCase made;
   for (const json& f : data.at("solutions_f")) made.places.push_back(frame_of(balls_at(data, f)));
   const auto home = balls_at(data, data.at("solutions_f").at(0));
-  MachineFile file(name, (home[0] + home[1] + home[2]) / 3);
+  made.tool = (home[0] + home[1] + home[2]) / 3;
+  MachineFile file(name, made.tool);
   for (std::size_t i = 0; i < 3; ++i) {
     const double turn = data.at("azimuth_deg")[i].get<double>() * M_PI / 180;
     const Vector3d out(std::cos(turn), std::sin(turn), 0);
@@ -180,14 +183,10 @@ TEST_P(EveryAssemblyMode, IsFoundAndCertified) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   ASSERT_EQ(dut.at("count"), data.at(kind.count)) << dut.at("completeness");
-  // The tool stands where the machine's file says; the linear Delta's at the origin.
-  const Vector3d tool = made.set.empty()
-                            ? point(json::parse(std::ifstream(made.machine)).at("tool"))
-                            : Vector3d::Zero();
   for (const Eigen::Isometry3d& place : made.places) {
     double nearest = 9;
     for (const json& solution : dut.at("solutions"))
-      nearest = std::min(nearest, distance(solution, place, tool));
+      nearest = std::min(nearest, distance(solution, place, made.tool));
     EXPECT_LT(nearest, 1e-6) << place.matrix();
   }
   for (const json& solution : dut.at("solutions")) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -36,7 +37,8 @@ inline std::string word(const std::vector<double>& numbers) {
 }
 
 inline nlohmann::json truth(const std::string& file) {
-  return nlohmann::json::parse(std::ifstream(POLYGLIDE_SOURCE_DIR "/tests/truth/" + file));
+  std::ifstream stream(POLYGLIDE_SOURCE_DIR "/tests/truth/" + file);
+  return nlohmann::json::parse(stream);
 }
 
 /// A mechanism file in the making. The base is "base", the platform "platform".
