@@ -245,7 +245,11 @@ class Measurer {
 
  private:
   static constexpr double kShare = 8;  // part of the tolerance that planes take
-  static constexpr int kFirst = 32, kLines = 48;  // planes, and lines in each, to begin with
+  static constexpr int kFirst = 64;    // planes to begin with
+
+  /// Lines in each plane to begin with: what is thinner than they are apart is missed, and at the
+  /// finest tolerances that shows.
+  [[nodiscard]] int first_lines() const { return search_.tolerance < 1e-6 ? 320 : 160; }
 
   Line line(double x, double y) const {
     Line result;
@@ -271,7 +275,8 @@ class Measurer {
     const auto at = [&](double y, const Line&, const Line&) { return line(x, y); };
     Pieces<Line, decltype(at)> pieces(at, range, tolerance);
     std::vector<double> places(hints);
-    for (int i = 0; i <= kLines; ++i) places.push_back(low + range * i / kLines);
+    const int count = first_lines();
+    for (int i = 0; i <= count; ++i) places.push_back(low + range * i / count);
     std::ranges::sort(places);
     std::vector<typename Pieces<Line, decltype(at)>::Mark> marks;
     for (const double y : places)
@@ -327,16 +332,19 @@ class Measurer {
                   : std::vector<int>{};
   }
 
-  /// The part of a plane at a place, -1 when there is none.
+  /// The part of a plane at a place, -1 when there is none. A place in the gap between two rows
+  /// counts as the end of the nearer.
   int part_at(const Plane& plane, double y, double z) const {
+    const auto aside = [y](const Plane::Row& row) { return y - std::clamp(y, row.a, row.b); };
+    const auto row = std::ranges::min_element(
+        plane.rows, {}, [&](const Plane::Row& each) { return std::abs(aside(each)); });
+    const double width = extent_.upper.y() - extent_.lower.y();
+    if (row == plane.rows.end() || std::abs(aside(*row)) > kNear * width) return -1;
     std::vector<Span> spans;
-    for (const Plane::Row& row : plane.rows) {
-      if (y < row.a || y > row.b) continue;
-      limits_.spans(plane.x, y, spans);
-      if (spans.size() != row.parts.size()) continue;
-      for (std::size_t s = 0; s < spans.size(); ++s)
-        if (z >= spans[s].from && z <= spans[s].to) return row.parts[s];
-    }
+    limits_.spans(plane.x, y - aside(*row), spans);
+    if (spans.size() != row->parts.size()) return -1;
+    for (std::size_t s = 0; s < spans.size(); ++s)
+      if (z >= spans[s].from && z <= spans[s].to) return row->parts[s];
     return -1;
   }
 
@@ -409,15 +417,19 @@ class Measurer {
         if (const int part = part_at(before, strip.y, strip.z); part >= 0)
           groups.join(numbers[i - 1][part], numbers[i][strip.part]);
     }
-    int own = -1;
-    for (std::size_t i = 0; i < leaves.size() && own < 0; ++i) {
-      if (inside.x() < leaves[i]->a || inside.x() > leaves[i]->b) continue;
-      const Plane here = at(inside.x(), leaves[i]->left, leaves[i]->right);
-      const int part = part_at(here, inside.y(), inside.z());
-      if (part >= 0 && part < static_cast<int>(numbers[i].size()))
-        own = groups.root(numbers[i][part]);
-    }
-    if (own < 0) return std::nullopt;
+    // The leaf at the place, or the nearer of those beside the gap that it is in.
+    const auto at_inside = [&](const Leaf<Plane>* leaf) {
+      return std::clamp(inside.x(), leaf->a, leaf->b);
+    };
+    const auto home = std::ranges::min_element(leaves, {}, [&](const Leaf<Plane>* leaf) {
+      return std::abs(inside.x() - at_inside(leaf));
+    });
+    if (home == leaves.end()) return std::nullopt;
+    const Plane here = at(at_inside(*home), (*home)->left, (*home)->right);
+    const int part = part_at(here, inside.y(), inside.z());
+    const auto& known = numbers[static_cast<std::size_t>(home - leaves.begin())];
+    if (part < 0 || part >= static_cast<int>(known.size())) return std::nullopt;
+    const int own = groups.root(known[part]);
     std::vector<int> parts;
     for (std::size_t i = 0; i < leaves.size(); ++i)
       for (std::size_t c = 0; c < numbers[i].size(); ++c) {

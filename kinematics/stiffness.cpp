@@ -44,11 +44,12 @@ Eigen::MatrixXd in_si(Eigen::MatrixXd jacobian, const TaskSpace& task) {
 std::optional<StiffnessRange> yielding_range(const Eigen::MatrixXd& stiffness, Eigen::Index count) {
   if (count == 0) return std::nullopt;
   const Eigen::Index rest = stiffness.cols() - count;
-  const Eigen::MatrixXd held = stiffness.topLeftCorner(count, count);
-  const Eigen::MatrixXd mixed = stiffness.topRightCorner(count, rest);
-  const Eigen::MatrixXd yielding = held - mixed * stiffness.bottomRightCorner(rest, rest)
-                                                      .completeOrthogonalDecomposition()
-                                                      .solve(mixed.transpose());
+  Eigen::MatrixXd yielding = stiffness.topLeftCorner(count, count);
+  if (rest > 0) {
+    const Eigen::MatrixXd mixed = stiffness.bottomLeftCorner(rest, count);
+    const Eigen::MatrixXd own = stiffness.bottomRightCorner(rest, rest);
+    yielding -= mixed.transpose() * own.completeOrthogonalDecomposition().solve(mixed);
+  }
   const Eigen::VectorXd values =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(yielding, Eigen::EigenvaluesOnly)
           .eigenvalues();

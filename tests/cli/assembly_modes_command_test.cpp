@@ -214,7 +214,7 @@ TEST(ModeBounds, AreThoseOfTheLiterature) {
   const json table =
       truth("forward_kinematics.json").at("counts_table").at("max_real_assembly_modes");
   const std::vector<std::pair<std::string, std::string>> machines{
-      {"general_6UPS", "hexapod-6ups"},
+      {"general_6UPS", "gough-platform"},
       {"octahedral_3_3", "octahedral-3-3"},
       {"planar_3RPR", "3-rpr-planar"},
       {"planar_3RRR", "3-rrr-planar"},

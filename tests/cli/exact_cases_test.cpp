@@ -224,8 +224,8 @@ TEST(ExactConditioning, TheTripteronIsOneToOneEverywhere) {
 TEST(ExactStiffness, CubicHexapod) {
   const TemporaryFolder folder;
   MachineFile file("cubic");
-  for (const json& leg : exact("cubic_hexapod_legs").at("values"))
-    file.strut(point(leg.at(0)), point(leg.at(1)));
+  const json legs = exact("cubic_hexapod_legs").at("values");
+  for (const json& leg : legs) file.strut(point(leg.at(0)), point(leg.at(1)));
   const json dut = pose(file.in(folder), {0, 0, 0}).at("stiffness");
   expect_diagonal(
       dut.at("matrix"),
