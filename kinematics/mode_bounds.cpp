@@ -101,11 +101,11 @@ bool parallel(const Joint& a, const Joint& b) { return a.axes[0].cross(b.axes[0]
 using Held = std::vector<const Joint*>;
 
 ModeBound of_two_limbs(const Mechanism& mechanism, const std::vector<Held>& limbs) {
-  const auto [fewer, more] = std::minmax(limbs[0].size(), limbs[1].size());
   const bool hinges =
       all_are(limbs[0], JointType::revolute) && all_are(limbs[1], JointType::revolute);
-  if (fewer == 1 && more == 2 && hinges && plane_of_motion(mechanism))
-    return {2, "two circles in a plane"};
+  const bool one_and_two = std::min(limbs[0].size(), limbs[1].size()) == 1 &&
+                           std::max(limbs[0].size(), limbs[1].size()) == 2;
+  if (one_and_two && hinges && plane_of_motion(mechanism)) return {2, "two circles in a plane"};
   return {};
 }
 
