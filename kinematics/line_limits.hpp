@@ -21,9 +21,8 @@ struct Span {
 /// workspace is parallel to it but by chance. Planar machines: lines in their plane, x = 0.
 class LineLimits {
  public:
-  /// nullopt for machines without closed form; whose rods must agree about a
-  /// carriage; with cones on cranks, clearances or expressions; or with fewer than two
-  /// translations.
+  /// nullopt for machines without closed form; whose rods must agree about a carriage; with cones
+  /// on cranks, clearances or expressions; or with fewer than two translations.
   /// @param box limits everything: search_bounds().
   [[nodiscard]] static std::optional<LineLimits> make(const Machine& machine,
                                                       const std::vector<std::string>& ignored,
