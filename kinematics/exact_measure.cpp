@@ -352,11 +352,35 @@ class Measurer {
     const Plane whole = plane(0, search_.tolerance * size_, {});
     const int part = part_at(whole, at.y(), at.z());
     if (part < 0) return std::nullopt;
-    return finished(
-        {whole.numbers[part], whole.error, false, static_cast<int>(whole.numbers.size())});
+    Bounds found = nothing();
+    widen(found, extent_.lower.x(), extent_.upper.x(), whole);
+    ExactMeasure result;
+    result.value = whole.numbers[part];
+    result.error = whole.error;
+    result.parts = static_cast<int>(whole.numbers.size());
+    return finished(result, found);
   }
 
-  ExactMeasure finished(ExactMeasure measure) const {
+  /// Takes in where a plane has anything, and a step of lines beyond.
+  void widen(Bounds& found, double from, double to, const Plane& plane) const {
+    const double across = (extent_.upper.x() - extent_.lower.x()) / kFirst;
+    const double along = (extent_.upper.y() - extent_.lower.y()) / first_lines();
+    for (const Plane::Row& row : plane.rows) {
+      if (row.parts.empty()) continue;
+      found.lower = found.lower.cwiseMin(Vector3(from - across, row.a - along, found.lower.z()));
+      found.upper = found.upper.cwiseMax(Vector3(to + across, row.b + along, found.upper.z()));
+    }
+  }
+
+  /// Nothing yet, in the frame of the lines.
+  [[nodiscard]] Bounds nothing() const {
+    Bounds found{extent_.upper, extent_.lower};
+    std::swap(found.lower.z(), found.upper.z());
+    return found;
+  }
+
+  ExactMeasure finished(ExactMeasure measure, const Bounds& found) const {
+    measure.extent = {found.lower.cwiseMax(extent_.lower), found.upper.cwiseMin(extent_.upper)};
     measure.lines = lines_;
     measure.reached = !spent() && measure.error <= search_.tolerance * measure.value;
     return measure;
@@ -440,7 +464,11 @@ class Measurer {
     // Every plane was known to its own tolerance.
     result.error += tolerance / kShare;
     result.parts = static_cast<int>(parts.size());
-    return finished(result);
+    Bounds found = nothing();
+    for (const auto* leaf : leaves)
+      for (const Plane* plane : {&leaf->left, &leaf->middle, &leaf->right})
+        widen(found, leaf->a, leaf->b, *plane);
+    return finished(result, found);
   }
 
   static constexpr double kNear = 1e-2;  // of the range: leaves nearer than this may be joined
@@ -457,7 +485,22 @@ class Measurer {
 std::optional<ExactMeasure> measure_exactly(const LineLimits& limits, const Vector3& inside,
                                             const Bounds& extent, double size,
                                             const ExactSearch& search) {
-  return Measurer(limits, extent, size, search).run(inside);
+  // Lines laid far too widely miss tips, and a size guessed too large asks for too little: both are
+  // put right by what was found.
+  constexpr int kTurns = 5;
+  Bounds where = extent;
+  std::optional<ExactMeasure> measure;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    measure = Measurer(limits, where, size, search).run(inside);
+    if (!measure || !(measure->value > 0) || measure->lines > search.lines) break;
+    const Vector3 wide = where.upper - where.lower;
+    const Vector3 found = measure->extent.upper - measure->extent.lower;
+    const bool tight = found.x() >= wide.x() / 2 && found.y() >= wide.y() / 2;
+    if (tight && (measure->reached || measure->value >= size)) break;
+    size = std::min(size, measure->value);
+    where = measure->extent;
+  }
+  return measure;
 }
 
 }  // namespace polyglide

@@ -13,6 +13,7 @@ struct ExactMeasure {
   bool reached = false;   ///< error <= tolerance × value
   int parts = 0;          ///< connected parts seen, the one measured among them
   std::size_t lines = 0;  ///< examined
+  Bounds extent;          ///< where any part was seen, in the frame of the lines
 };
 
 struct ExactSearch {
@@ -29,7 +30,9 @@ struct ExactSearch {
 /// touches none of them can be missed. nullopt
 /// when no piece holds `inside`, or when the pieces are too many.
 /// @param inside a place well inside, base frame. @param extent where lines are laid, in the frame
-/// of the lines. Same bits for any number of threads.
+/// of the lines. @param size about what will come out: errors are judged by it; when
+/// it is too large, or the extent more than twice what is found, another turn is taken. Same bits
+/// for any number of threads.
 [[nodiscard]] std::optional<ExactMeasure> measure_exactly(const LineLimits& limits,
                                                           const Vector3& inside,
                                                           const Bounds& extent, double size,
