@@ -56,6 +56,19 @@ TEST(WorkspaceCommand, AnEmptyWorkspaceSaysWhatStopsHome) {
   EXPECT_EQ(answer({"workspace", "delta-1", "--turned", "10,0,0"}).at("stopped_by"), "motion");
 }
 
+TEST(WorkspaceCommand, PlanarMachinesHaveAreas) {
+  for (const char* name : {"five-bar", "3-rpr-planar", "3-rrr-planar", "3-prr-planar"}) {
+    const json dut = answer({"workspace", name});
+    const double area = dut.at("area").get<double>();
+    EXPECT_EQ(dut.at("method"), "quadrature") << name;
+    EXPECT_EQ(dut.at("volume"), 0) << name;
+    EXPECT_GT(area, dut.at("area_bounds").at(0).get<double>()) << name;
+    EXPECT_LT(area, dut.at("area_bounds").at(1).get<double>()) << name;
+    EXPECT_LT(dut.at("area_error").get<double>(), 2e-6 * area) << name;
+    EXPECT_GE(dut.at("reach").get<double>(), area * (1 - 1e-5)) << name;
+  }
+}
+
 TEST(WorkspaceCommand, RefusesWhatCannotBe) {
   refused({"workspace", "delta-1", "--accuracy", "1e-20"}, "--accuracy");
   refused({"workspace", "delta-1", "--accuracy", "nan"}, "no number");
