@@ -211,8 +211,10 @@ void LineLimits::add_box(const Machine& machine, const Bounds& box) {
   frame_ = turned_frame(active, dimensions_);
   for (int axis = 0; axis < 3; ++axis) {
     if (!active[axis]) continue;
-    planes_.push_back({Vector3::Unit(axis), box.upper[axis], limits_++});
-    planes_.push_back({-Vector3::Unit(axis), -box.lower[axis], limits_++});
+    // Where a straight end of reach is a side of the box, rounding would choose between the two.
+    const double margin = 1e-6 * size_;
+    planes_.push_back({Vector3::Unit(axis), box.upper[axis] + margin, limits_++});
+    planes_.push_back({-Vector3::Unit(axis), margin - box.lower[axis], limits_++});
   }
   extent_ = frame_bounds(box);
 }
