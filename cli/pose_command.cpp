@@ -4,6 +4,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/machines.hpp"
+#include "cli/pose_indices.hpp"
 #include "cli/print.hpp"
 #include "cli/singularities.hpp"
 #include "kinematics/assembly_modes.hpp"
@@ -36,15 +37,27 @@ Eigen::VectorXd read_drives(const std::string& text, const Model& model) {
   return drives;
 }
 
+/// Adds Jacobian, conditioning and stiffness to a document; the same for people.
+std::string add_indices(const Machine& machine, const Pose& pose, const Eigen::VectorXd& drives,
+                        const std::optional<Posture>& posture, const Springs& springs,
+                        ordered_json& document) {
+  const auto indices = indices_at(machine, pose, drives, posture, springs);
+  if (!indices) return "";
+  add_json(*indices, machine.task, document);
+  return text_of(*indices, springs);
+}
+
 ordered_json inverse(const Machine& machine, const Pose& pose,
-                     const std::vector<std::string>& ignored, bool json) {
+                     const std::vector<std::string>& ignored, const Springs& springs, bool json) {
   const InverseResult result = solve_inverse(machine, pose, ignored);
   ordered_json document{{"name", machine.model.mechanism.name}, {"reachable", result.reachable}};
   document["drives"] = std::vector<double>(result.drives.begin(), result.drives.end());
   document["limit"] = result.limit.empty() ? ordered_json() : ordered_json(result.limit);
   document["pose"] = pose_json(result.pose);
+  std::string indices;
+  if (result.reachable)
+    indices = add_indices(machine, result.pose, result.drives, result.posture, springs, document);
   if (json) return document;
-
   std::cout << machine.model.mechanism.name << ": "
             << (result.reachable ? "reachable" : "not reachable: " + result.limit) << "\n";
   if (!result.reachable) return document;
@@ -53,6 +66,7 @@ ordered_json inverse(const Machine& machine, const Pose& pose,
     std::cout << fmt::format(
         "    {:<16} {}\n", drive_name(machine.model, d),
         linear_drive(machine.model, d) ? in_mm(result.drives[d]) : in_degrees(result.drives[d]));
+  std::cout << indices;
   return document;
 }
 
@@ -68,19 +82,24 @@ ordered_json solution_json(const ForwardSolution& solution) {
 }
 
 ordered_json completeness_json(const Completeness& completeness) {
-  return {{"starts", completeness.starts},
-          {"hits", completeness.hits},
-          {"rarest_hits", completeness.rarest_hits},
-          {"unseen", completeness.unseen},
-          {"bound", completeness.bound > 0 ? ordered_json(completeness.bound) : ordered_json()},
-          {"complete", completeness.complete},
-          {"stopped", completeness.stopped}};
+  return {
+      {"starts", completeness.starts},
+      {"hits", completeness.hits},
+      {"rarest_hits", completeness.rarest_hits},
+      {"unseen", completeness.unseen},
+      {"bound", completeness.bound > 0 ? ordered_json(completeness.bound) : ordered_json()},
+      {"family", completeness.family.empty() ? ordered_json() : ordered_json(completeness.family)},
+      {"complete", completeness.complete},
+      {"stopped", completeness.stopped}};
 }
 
-void print_modes(const Machine& machine, const AssemblyModes& modes, bool all) {
+/// @param indices of every solution, for people.
+void print_modes(const Machine& machine, const AssemblyModes& modes,
+                 const std::vector<std::string>& indices, bool all) {
   std::cout << fmt::format("{}: {} assembly mode(s) found\n", machine.model.mechanism.name,
                            modes.solutions.size());
-  for (const ForwardSolution& solution : modes.solutions) {
+  for (std::size_t i = 0; i < modes.solutions.size(); ++i) {
+    const ForwardSolution& solution = modes.solutions[i];
     std::string notes;
     if (solution.home_mode)
       notes = " (home's assembly mode)";
@@ -89,9 +108,12 @@ void print_modes(const Machine& machine, const AssemblyModes& modes, bool all) {
     if (all && !solution.certified) notes += " (not proved)";
     if (all && solution.region >= 0) notes += fmt::format(" region {}", solution.region + 1);
     std::cout << fmt::format("  pose from home {}{}\n", pose_text(solution.pose), notes);
+    if (!all) std::cout << indices[i];
   }
   const Completeness& completeness = modes.completeness;
   if (!all) return;
+  if (modes.solutions.empty())
+    std::cout << "  the drives are out of reach: no posture has these drive positions\n";
   if (completeness.complete)
     std::cout << "  all there can be, each proved\n";
   else
@@ -101,8 +123,8 @@ void print_modes(const Machine& machine, const AssemblyModes& modes, bool all) {
         completeness.starts, completeness.stopped, completeness.unseen);
 }
 
-ordered_json forward(const Machine& machine, const std::string& text, bool all, std::uint64_t seed,
-                     bool json) {
+ordered_json forward(const Machine& machine, const std::string& text, bool all,
+                     const Springs& springs, std::uint64_t seed, bool json) {
   AssemblySearch search;
   search.seed = seed;
   const Eigen::VectorXd drives = read_drives(text, machine.model);
@@ -113,10 +135,14 @@ ordered_json forward(const Machine& machine, const std::string& text, bool all, 
     modes.solutions = solve_forward(machine, drives, false, seed);
   ordered_json document{{"name", machine.model.mechanism.name}, {"count", modes.solutions.size()}};
   document["solutions"] = ordered_json::array();
-  for (const ForwardSolution& solution : modes.solutions)
+  std::vector<std::string> indices;
+  for (const ForwardSolution& solution : modes.solutions) {
     document["solutions"].push_back(solution_json(solution));
+    indices.push_back(add_indices(machine, solution.pose, drives, solution.posture, springs,
+                                  document["solutions"].back()));
+  }
   if (all) document["completeness"] = completeness_json(modes.completeness);
-  if (!json) print_modes(machine, modes, all);
+  if (!json) print_modes(machine, modes, indices, all);
   return document;
 }
 
@@ -127,6 +153,7 @@ int run_pose(CommandLine& line) {
   std::string ik, fk;
   std::vector<std::string> ignored;
   SingularityQuestions questions;
+  StiffnessOptions yields;
   bool all = false;
   add_machine_options(line.options(), options);
   auto* ik_option = line.options().add_option(
@@ -146,6 +173,7 @@ int run_pose(CommandLine& line) {
       .add_flag("--nearest-singularity", questions.nearest,
                 "With --ik: the nearest singular pose, too")
       ->needs(ik_option);
+  add_stiffness_options(line.options(), yields);
   if (!line.parse()) return kDone;
   if (ik.empty() && fk.empty())
     throw InputError({wrong_argument("", "pose needs --ik x,y,z[,a,b,c] or --fk q1,q2,…")});
@@ -153,12 +181,13 @@ int run_pose(CommandLine& line) {
   std::vector<ordered_json> documents;
   for (const ChosenMachine& chosen : load_machines(options)) {
     const Machine machine = prepare(chosen.mechanism);
+    const Springs springs = springs_of(yields, machine);
     if (ik.empty()) {
-      documents.push_back(forward(machine, fk, all, line.seed(), line.json()));
+      documents.push_back(forward(machine, fk, all, springs, line.seed(), line.json()));
       continue;
     }
     const Pose pose = read_pose(ik, "--ik", chosen.mechanism.units);
-    documents.push_back(inverse(machine, pose, ignored, line.json()));
+    documents.push_back(inverse(machine, pose, ignored, springs, line.json()));
     add_singularities(machine, pose, questions, line.seed(), line.json(), documents.back());
   }
   if (line.json()) print_json(one_or_all(std::move(documents)));

@@ -217,7 +217,8 @@ CLI::Validator between(double least, double most) {
 /// A limit that is ignored by a name that no limit has is most likely misspelt.
 void remark_unknown(const std::vector<std::string>& ignored, const Machine& machine) {
   for (const std::string& word : ignored) {
-    const std::vector<std::string> names = Evaluator(machine).limit_names();
+    std::vector<std::string> names = Evaluator(machine).limit_names();
+    names.emplace_back("singularity");
     const bool known = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
       return name == word || name.substr(0, name.find(' ')) == word;
     });

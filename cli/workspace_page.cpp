@@ -32,13 +32,25 @@ std::string headline(const Workspace& workspace) {
                        litres(workspace.volume), workspace.certified ? "proved" : "estimated",
                        litres(workspace.volume_lower), litres(workspace.volume_upper));
   if (workspace.area > 0)
-    return fmt::format("{} {:.4g} cm² (estimated), positions from home", what,
-                       workspace.area * 1e4);
+    return fmt::format("{} {:.4g} cm² (by {}), positions from home", what, workspace.area * 1e4,
+                       workspace.method);
   if (workspace.length > 0)
     return fmt::format("{} {} long, positions from home", what, in_mm(workspace.length));
   if (!workspace.stopped_by.empty())
     return fmt::format("{} empty: home is stopped by {}", what, workspace.stopped_by);
   return fmt::format("{} is one place: the machine commands no translation", what);
+}
+
+/// How exact a size by quadrature is, and what lies beyond singular surfaces.
+std::string measured(const Workspace& workspace) {
+  const double size = workspace.volume + workspace.area;  // one of them is zero
+  std::string text = fmt::format("by quadrature, relative error {:.1g}", workspace.error / size);
+  if (workspace.singular_throughout)
+    text += "; every pose of this orientation is singular: limits alone count";
+  else if (workspace.reach && *workspace.reach > size * (1 + 1e-5))
+    text += fmt::format("; {:.4g} times that where singular surfaces and gaps stop nothing",
+                        *workspace.reach / size);
+  return text;
 }
 
 void add_shape(const char* label, const std::string& shape, const ShapeEvidence& evidence,
@@ -72,6 +84,7 @@ void print_page(const Workspace& workspace, const WorkspaceOptions& how, const s
   std::vector<std::vector<std::string>> rows{
       {"  extent",
        fmt::format("{} to {}", point_in_mm(workspace.lower), point_in_mm(workspace.upper))}};
+  if (workspace.method == "quadrature") rows.push_back({"  measured", measured(workspace)});
   if (workspace.volume > 0) add_shapes(workspace, rows);
   if (const auto& set = workspace.orientations)
     rows.push_back(

@@ -12,6 +12,7 @@
 #include "kinematics/distance_newton.hpp"
 #include "kinematics/krawczyk.hpp"
 #include "kinematics/manifold.hpp"
+#include "kinematics/mode_bounds.hpp"
 
 namespace polyglide {
 namespace {
@@ -90,6 +91,7 @@ using Found = std::optional<ForwardSolution>;
 template <typename Start>
 std::vector<ForwardSolution> gather(const Model& model, const AssemblySearch& search, int most,
                                     int round, Completeness& completeness, const Start& start) {
+  constexpr int kLeast = 3, kFruitless = 8;  // rounds
   std::vector<ForwardSolution> modes;
   std::vector<int> hits;
   bool scattered = false;
@@ -115,7 +117,8 @@ std::vector<ForwardSolution> gather(const Model& model, const AssemblySearch& se
       }
     }
     completeness.rarest_hits = hits.empty() ? 0 : *std::min_element(hits.begin(), hits.end());
-    if (completeness.rarest_hits >= search.hits) break;
+    if (completeness.rarest_hits >= search.hits && completeness.starts >= kLeast * round) break;
+    if (completeness.hits == 0 && completeness.starts >= kFruitless * round) break;
     // A continuum: nearly every start ends somewhere else.
     scattered =
         completeness.hits >= 60 && 2 * std::count(hits.begin(), hits.end(), 1) > completeness.hits;
@@ -127,7 +130,11 @@ std::vector<ForwardSolution> gather(const Model& model, const AssemblySearch& se
   if (completeness.hits > 0)
     completeness.unseen =
         std::max(1.0, static_cast<double>(once)) / static_cast<double>(completeness.hits);
-  if (scattered)
+  if (completeness.hits == 0)
+    completeness.stopped = fmt::format(
+        "none of {} starts had ended in a posture: these drives seem to be out of reach",
+        completeness.starts);
+  else if (scattered)
     completeness.stopped =
         "nearly every start had ended elsewhere: the drives do not hold the platform";
   else if (completeness.rarest_hits >= search.hits)
@@ -301,6 +308,7 @@ AssemblyModes find_assembly_modes(const Machine& machine, const Eigen::VectorXd&
   if (const auto spheres = leg_spheres(machine, drives)) {
     result.solutions = three_sphere_modes(machine, drives);
     completeness.bound = 2;
+    completeness.family = "three spheres";
     completeness.unseen = 0;
     completeness.stopped = "closed form";
     // The two points lie on either side of the plane of the centres, where det J is zero: home's
@@ -319,10 +327,12 @@ AssemblyModes find_assembly_modes(const Machine& machine, const Eigen::VectorXd&
     return result;
   }
 
+  const ModeBound most = most_modes(machine);
+  completeness.bound = most.count;
+  completeness.family = most.family;
   const std::vector<int> legs = distance_legs(machine);
   if (!legs.empty()) {
     const DistancePlatform platform(machine, legs, drives);
-    completeness.bound = 40;
     constexpr int kMost = 40000, kRound = 2000;
     result.solutions = gather(model, search, search.starts > 0 ? search.starts : kMost, kRound,
                               completeness, [&](std::uint64_t number) -> Found {

@@ -13,6 +13,7 @@ struct Completeness {
   int rarest_hits = 0;  ///< hits of the mode that was met least often
   double unseen = 1;    ///< Good–Turing: estimated share of hits that modes not yet met would get
   int bound = 0;        ///< most isolated modes such a machine can have; 0 = not known here
+  std::string family;   ///< machines that the bound holds for
   bool complete = false;  ///< proved: `bound` different modes are certified
   std::string stopped;    ///< why the search ended, in words
 };
@@ -25,7 +26,7 @@ struct AssemblyModes {
 struct AssemblySearch {
   std::uint64_t seed = 1;
   int hits = 8;         ///< every mode must have been met so often before the search ends
-  int starts = 0;       ///< most Newton runs; 0: 40000 for leg machines, 1600 for others
+  int starts = 0;       ///< most Newton runs; 0: 40000 for six legs, 1600 for others
   bool regions = true;  ///< also look for singularity-free paths between modes
 };
 

@@ -61,6 +61,7 @@ void measure_by_quadrature(Workspace& workspace, const Probe& probe, const Regio
   if (!limits) return;
   ExactSearch search;
   search.tolerance = std::min(1e-6, options.accuracy);
+  search.lines = search.tolerance < 1e-6 ? 20'000'000 : 3'000'000;
   const bool flat = limits->dimensions() == 2;
   double& size = flat ? workspace.area : workspace.volume;
   if (region.empty) {
@@ -84,21 +85,22 @@ void measure_by_quadrature(Workspace& workspace, const Probe& probe, const Regio
   const bool sided = probe.side() != 0 && usable.keep_side_of(*inside);
   const Bounds lines = lines_around(region, *limits);
   const auto exact = measure_exactly(usable, *inside, lines, size, search);
-  if (!exact) return;
   const double lower = flat ? workspace.area_lower : workspace.volume_lower;
   const double upper = flat ? workspace.area_upper : workspace.volume_upper;
-  if (!agrees(*exact, size, workspace.error, workspace.certified ? lower : 0,
-              workspace.certified ? upper : std::numeric_limits<double>::infinity()))
-    return;
-  size = exact->value;
-  workspace.error = exact->error;
-  workspace.method = "quadrature";
-  if (!sided && exact->parts == 1) {
-    workspace.reach = exact->value;
-    return;
+  const bool taken =
+      exact && agrees(*exact, size, workspace.error, workspace.certified ? lower : 0,
+                      workspace.certified ? upper : std::numeric_limits<double>::infinity());
+  if (taken) {
+    size = exact->value;
+    workspace.error = exact->error;
+    workspace.method = "quadrature";
+    if (!sided && exact->parts == 1) {
+      workspace.reach = exact->value;
+      return;
+    }
   }
   const auto whole = measure_exactly(*limits, *inside, limits->extent(), size, search);
-  if (whole) workspace.reach = whole->value;
+  if (whole && whole->value >= size * (1 - 8 * search.tolerance)) workspace.reach = whole->value;
 }
 
 }  // namespace polyglide

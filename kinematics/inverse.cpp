@@ -142,6 +142,7 @@ InverseResult solve_inverse(const Machine& machine, const Pose& pose,
   Posture posture = home(machine.model);
   InverseResult result = solve_inverse_general(machine, pose, posture);
   if (result.reachable) result.limit = broken_limit(machine.model, posture, ignored);
+  if (result.reachable) result.posture = std::move(posture);
   result.reachable = result.reachable && result.limit.empty();
   return result;
 }

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <limits>
 
 #include "kinematics/manifold.hpp"
@@ -5,6 +6,11 @@
 #include "kinematics/solve.hpp"
 
 namespace polyglide {
+namespace {
+
+constexpr double kAcross = 1e-12;  // cosine between a rod and a motion that it is across
+
+}  // namespace
 
 std::optional<Eigen::MatrixXd> task_jacobian(const Machine& machine, const Posture& posture) {
   const Model& model = machine.model;
@@ -23,6 +29,29 @@ std::optional<Eigen::MatrixXd> task_jacobian(const Machine& machine, const Postu
   const Svd svd = svd_of(task);
   if (decide_rank(svd.values, model.size).rank < axes) return std::nullopt;
   return drives * svd.v.leftCols(axes) * svd.values.cwiseInverse().asDiagonal() * svd.u.transpose();
+}
+
+std::optional<Eigen::MatrixXd> leg_rows(const Machine& machine, const Pose& pose,
+                                        const Eigen::VectorXd& drives) {
+  if (!machine.legs) return std::nullopt;
+  const Vector3& tool = machine.model.mechanism.tool;
+  Eigen::MatrixXd rows(drives.size(), 6);
+  for (Eigen::Index d = 0; d < drives.size(); ++d) {
+    const Leg& leg = machine.legs->legs[machine.legs->primary[d]];
+    const Vector3 arm = pose.rotation * (leg.platform_point - tool);
+    Vector3 base = leg.base_point;
+    if (leg.kind == Leg::Kind::guide_rod) base += drives[d] * leg.direction;
+    if (leg.kind == Leg::Kind::crank_rod)
+      base = leg.centre + Eigen::AngleAxisd(drives[d], leg.direction) * (base - leg.centre);
+    const Vector3 rod = tool + pose.position + arm - base;
+    const Vector3 motion = leg.kind == Leg::Kind::crank_rod ? leg.direction.cross(base - leg.centre)
+                           : leg.kind == Leg::Kind::strut   ? rod.normalized()
+                                                            : leg.direction;
+    const double along = rod.dot(motion);
+    if (!(std::abs(along) > kAcross * rod.norm() * motion.norm())) return std::nullopt;
+    rows.row(d) << rod.transpose() / along, arm.cross(rod).transpose() / along;
+  }
+  return rows;
 }
 
 double condition_number(const Eigen::MatrixXd& jacobian) {

@@ -4,12 +4,15 @@
 #include <cmath>
 
 #include "kinematics/leg_places.hpp"
+#include "kinematics/planar.hpp"
 
 namespace polyglide {
 namespace {
 
-bool turns_freely(const Joint& joint) {
-  return (joint.type == JointType::universal || joint.type == JointType::spherical) &&
+/// A rod's end: a ball or a universal joint, in planar machines a hinge.
+bool turns_freely(const Joint& joint, bool planar) {
+  return (joint.type == JointType::universal || joint.type == JointType::spherical ||
+          (planar && joint.type == JointType::revolute)) &&
          joint.driven.empty() &&
          std::all_of(joint.range.begin(), joint.range.end(), [](const Range& range) {
            return std::isinf(range.min) && std::isinf(range.max);
@@ -30,6 +33,7 @@ class Recogniser {
   explicit Recogniser(const Model& model)
       : model_(model),
         mechanism_(model.mechanism),
+        planar_(plane_of_motion(model.mechanism).has_value()),
         joints_of_(mechanism_.bodies.size()),
         used_(mechanism_.joints.size(), false) {
     for (int j = 0; j < static_cast<int>(mechanism_.joints.size()); ++j)
@@ -75,11 +79,11 @@ class Recogniser {
   }
 
   std::optional<Leg> leg_from(int platform_joint) {
-    if (!turns_freely(mechanism_.joints[platform_joint])) return std::nullopt;
+    if (!turns_freely(mechanism_.joints[platform_joint], planar_)) return std::nullopt;
     const int rod = other_body(platform_joint, mechanism_.platform);
     const int next = second_joint(rod, platform_joint);
     if (rod == mechanism_.base || next < 0) return std::nullopt;
-    if (turns_freely(mechanism_.joints[next])) return rod_leg(platform_joint, rod, next);
+    if (turns_freely(mechanism_.joints[next], planar_)) return rod_leg(platform_joint, rod, next);
     if (is_drive(mechanism_.joints[next])) return strut_leg(platform_joint, rod, next);
     return std::nullopt;
   }
@@ -139,7 +143,7 @@ class Recogniser {
   std::optional<Leg> strut_leg(int platform_joint, int upper, int drive_joint) {
     const int lower = other_body(drive_joint, upper);
     const int base_joint = second_joint(lower, drive_joint);
-    if (base_joint < 0 || !turns_freely(mechanism_.joints[base_joint]) ||
+    if (base_joint < 0 || !turns_freely(mechanism_.joints[base_joint], planar_) ||
         other_body(base_joint, lower) != mechanism_.base)
       return std::nullopt;
     Leg leg = leg_between(base_joint, platform_joint, drive_joint);
@@ -165,6 +169,7 @@ class Recogniser {
 
   const Model& model_;
   const Mechanism& mechanism_;
+  bool planar_;
   std::vector<std::vector<int>> joints_of_;
   std::vector<bool> used_;
 };

@@ -36,6 +36,38 @@ Quartic product(const Quartic& a, const Quartic& b) {
   return result;
 }
 
+/// Where a function whose values at a < b < c have one sign, b's the least, has the other sign
+/// between.
+struct Turn {
+  double at, value;
+};
+
+/// By parabolas through three points; nullopt when the turn stays on its side.
+template <typename Function>
+std::optional<Turn> crossed_turn(const Function& f, double a, double fa, double b, double fb,
+                                 double c, double fc) {
+  const double sign = fb < 0 ? -1 : 1;
+  fa *= sign, fb *= sign, fc *= sign;
+  if (!(fb < fa && fb < fc)) return std::nullopt;
+  for (int i = 0; i < 8; ++i) {
+    const double p = (b - a) * (fb - fc), q = (b - c) * (fb - fa);
+    const double lowest = b - ((b - a) * p - (b - c) * q) / (2 * (p - q));
+    if (!(lowest > a && lowest < c) || std::abs(lowest - b) < 1e-9 * (c - a)) return std::nullopt;
+    const double value = f(lowest), here = sign * value;
+    if (here < 0) return Turn{lowest, value};
+    if (here < fb) {
+      (lowest < b ? c : a) = b;
+      (lowest < b ? fc : fa) = fb;
+      b = lowest;
+      fb = here;
+    } else {
+      (lowest < b ? a : c) = lowest;
+      (lowest < b ? fa : fc) = here;
+    }
+  }
+  return std::nullopt;
+}
+
 /// Base axes of a frame that nothing in a machine is likely to be parallel to; in a plane x is its
 /// normal.
 Eigen::Matrix3d turned_frame(const std::array<bool, 3>& active, int dimensions) {
@@ -72,9 +104,9 @@ std::optional<LineLimits> LineLimits::make(const Machine& machine,
 
 bool LineLimits::add_rods(const Machine& machine, const std::vector<std::string>& ignored,
                           const Eigen::Quaterniond& rotation) {
+  const LegMachine& legs = *machine.legs;
   const Vector3& tool = machine.model.mechanism.tool;
   const auto& joints = machine.model.mechanism.joints;
-  const LegMachine& legs = *machine.legs;
   drives_.resize(machine.model.drives.size());
   for (int i = 0; i < static_cast<int>(legs.legs.size()); ++i) {
     const Leg &leg = legs.legs[i], &first = legs.legs[legs.primary[leg.drive]];
@@ -179,8 +211,10 @@ void LineLimits::add_box(const Machine& machine, const Bounds& box) {
   frame_ = turned_frame(active, dimensions_);
   for (int axis = 0; axis < 3; ++axis) {
     if (!active[axis]) continue;
-    planes_.push_back({Vector3::Unit(axis), box.upper[axis], limits_++});
-    planes_.push_back({-Vector3::Unit(axis), -box.lower[axis], limits_++});
+    // Where a straight end of reach is a side of the box, rounding would choose between the two.
+    const double margin = 1e-6 * size_;
+    planes_.push_back({Vector3::Unit(axis), box.upper[axis] + margin, limits_++});
+    planes_.push_back({-Vector3::Unit(axis), margin - box.lower[axis], limits_++});
   }
   extent_ = frame_bounds(box);
 }
@@ -357,12 +391,13 @@ void LineLimits::cut_at_singularities(const Vector3& start, std::vector<Span>& s
   thread_local std::vector<Span> kept;
   kept.clear();
   for (const Span& span : spans) {
-    constexpr int kSamples = 12;
+    // Closer at the ends, where the rise of a rod may go with the root of the distance.
+    constexpr int kSamples = 16;
+    const auto place = [&](double i) {
+      return span.from + (span.to - span.from) * (1 - std::cos(M_PI * i / kSamples)) / 2;
+    };
     std::array<double, kSamples + 1> z, f;
-    for (int i = 0; i <= kSamples; ++i) {
-      z[i] = span.from + (span.to - span.from) * i / kSamples;
-      f[i] = at(z[i]);
-    }
+    for (int i = 0; i <= kSamples; ++i) f[i] = at(z[i] = place(i));
     std::array<double, 2 * kSamples> roots;
     int count = 0;
     for (int i = 0; i < kSamples; ++i) {
@@ -370,18 +405,12 @@ void LineLimits::cut_at_singularities(const Vector3& start, std::vector<Span>& s
         roots[count++] = zero_between(at, z[i], z[i + 1], f[i], f[i + 1]);
         continue;
       }
-      if (i == 0) continue;
+      if (i == 0 || (f[i - 1] < 0) != (f[i] < 0)) continue;
       // A turn towards zero between samples of one sign may cross it twice.
-      const double left = f[i] - f[i - 1], right = f[i + 1] - f[i], bend = right - left;
-      const bool turns = f[i] > 0 ? left < 0 && right > 0 : left > 0 && right < 0;
-      if (!turns || (f[i - 1] < 0) != (f[i] < 0)) continue;
-      const double shift = -(left + right) / (2 * bend);
-      const double lowest = z[i] + shift * (z[i + 1] - z[i]), value = at(lowest);
-      if ((value < 0) == (f[i] < 0)) continue;
-      const double before = shift < 0 ? z[i - 1] : z[i], f_before = shift < 0 ? f[i - 1] : f[i];
-      const double after = shift < 0 ? z[i] : z[i + 1], f_after = shift < 0 ? f[i] : f[i + 1];
-      roots[count++] = zero_between(at, before, lowest, f_before, value);
-      roots[count++] = zero_between(at, lowest, after, value, f_after);
+      const auto turn = crossed_turn(at, z[i - 1], f[i - 1], z[i], f[i], z[i + 1], f[i + 1]);
+      if (!turn) continue;
+      roots[count++] = zero_between(at, z[i - 1], turn->at, f[i - 1], turn->value);
+      roots[count++] = zero_between(at, turn->at, z[i + 1], turn->value, f[i + 1]);
     }
     std::sort(roots.begin(), roots.begin() + count);
     double from = span.from;

@@ -171,7 +171,8 @@ Probe::Answers Probe::ask(PoseBatch poses, bool conditioning) const {
   poses.wanted =
       !conditioning && square_ ? Wanted::orientation : Wanted::condition | Wanted::orientation;
   BatchResult result = evaluate(poses);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
+  if (crosses_) std::ranges::fill(result.orientation, 0);
+  for (std::size_t i = 0; i < poses.size() && !crosses_; ++i) {
     const bool across = side_ != 0 && result.orientation[i] != side_;
     const bool regular = (poses.wanted & Wanted::condition) != 0
                              ? result.inverse_condition[i] > kSingular

@@ -67,6 +67,12 @@ class Probe {
   [[nodiscard]] int side() const { return side_; }
   void set_side(int side) { side_ = side; }
 
+  /// From now on singular surfaces are no limit.
+  void cross_singularities() {
+    crosses_ = true;
+    side_ = 0;
+  }
+
   [[nodiscard]] const Evaluator& evaluator() const { return evaluator_; }
   /// The orientation, of a set the first.
   [[nodiscard]] const Eigen::Quaterniond& rotation() const { return rotations_.front(); }
@@ -88,6 +94,7 @@ class Probe {
   std::vector<std::string> names_;
   std::array<bool, 3> active_{};
   bool square_ = false;  ///< as many drives as task axes
+  bool crosses_ = false;  ///< singular surfaces are no limit
   int side_ = 0;
   mutable std::atomic<std::size_t> poses_ = 0;
 };

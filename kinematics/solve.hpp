@@ -17,7 +17,8 @@ struct Machine {
   std::optional<LegMachine> legs;
 };
 
-/// Compiles a mechanism and finds its task space (a short mobility analysis).
+/// Compiles a mechanism and finds its task space (a short mobility analysis). Planar machines of two
+/// freedoms whose tool has both its coordinates free, such as five-bars, are commanded by these.
 [[nodiscard]] Machine prepare(const Mechanism& mechanism);
 
 /// The same for a mechanism whose task space is known, as when only dimensions
@@ -46,9 +47,10 @@ struct InverseResult {
   bool reachable = false;
   std::string limit;  ///< why not: "stroke leg1.guide max", "rod leg2.rod cannot reach", …; "" when
                       ///< reachable
-  Eigen::VectorXd drives;  ///< from home, order of Model::drives [m, rad]
-  Pose pose;               ///< the full pose taken, parasitic parts included
-  double residual = 0;     ///< closure error [m, rad], scaled
+  Eigen::VectorXd drives;          ///< from home, order of Model::drives [m, rad]
+  Pose pose;                       ///< the full pose taken, parasitic parts included
+  double residual = 0;             ///< closure error [m, rad], scaled
+  std::optional<Posture> posture;  ///< of the whole mechanism; not where the way was closed form
 };
 
 /// Drives for a pose. Only the machine's independent task coordinates are
@@ -98,6 +100,15 @@ struct ForwardSolution {
 /// nullopt at a posture where the platform rates do not fix the drives.
 [[nodiscard]] std::optional<Eigen::MatrixXd> task_jacobian(const Machine& machine,
                                                            const Posture& posture);
+
+/// The same rates by the legs of a leg machine, m×6, before axes are chosen: drive rates in SI per
+/// rate of the tool point X Y Z [m/s] and of the rotation A B C [rad/s]. With r the rod from its
+/// joint on carriage or crank, whose motion per drive is b, to its joint at a from the tool: the
+/// row is [r, a × r]/(r·b), a strut's b its unit vector.
+/// @param drives from home; the legs have their lengths with them at this pose, on either root.
+/// nullopt without legs, or where a rod is across the motion of its carriage.
+[[nodiscard]] std::optional<Eigen::MatrixXd> leg_rows(const Machine& machine, const Pose& pose,
+                                                      const Eigen::VectorXd& drives);
 
 /// 2-norm condition number, infinity when singular, of any m×n Jacobian.
 [[nodiscard]] double condition_number(const Eigen::MatrixXd& jacobian);

@@ -10,6 +10,8 @@
 #include "kinematics/certified_volume.hpp"
 #include "kinematics/clearance.hpp"
 #include "kinematics/exact_workspace.hpp"
+#include "kinematics/limits.hpp"
+#include "kinematics/point_machine.hpp"
 #include "kinematics/region_boundary.hpp"
 #include "kinematics/region_measure.hpp"
 
@@ -192,10 +194,13 @@ void inscribe(Workspace& result, const Probe& probe, const Inscriber& inscriber)
 }  // namespace
 
 Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& options) {
+  if (const auto point = point_machine(machine)) return compute_workspace(*point, options);
   const auto start = std::chrono::steady_clock::now();
   const Evaluator evaluator(machine, options.ignored);
   const int samples = evaluator.closed_form() ? 3 : 1;
   Probe probe(evaluator, orientations_of(machine, options, samples));
+  const bool crosses = is_ignored("singularity", options.ignored);
+  if (crosses) probe.cross_singularities();
   probe.set_counter(counter_for(options, expected_poses(evaluator, probe.orientations())));
   const RegionFineness fineness =
       region_fineness(sampled_accuracy(options), evaluator.closed_form());
@@ -210,7 +215,7 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
                  measure_region(probe, region, fineness, sampled_accuracy(options)));
     const Boundary boundary = find_boundary(probe, region, fineness.bisections);
     result.limits_hit = boundary.limits;
-    if (one && !options.volume_only && probe.dimensions() == 3)
+    if (one && !crosses && !options.volume_only && probe.dimensions() == 3)
       certify(result, evaluator.machine(), options, region, search_bounds(probe));
     result.lower = boundary.extent.lower;
     result.upper = boundary.extent.upper;

@@ -5,19 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "support/run_program.hpp"
+#include "answer.hpp"
 
 // The ways to ask for a workspace.
 namespace polyglide::test {
 namespace {
 
 using nlohmann::json;
-
-json answer(const std::vector<std::string>& words) {
-  const ProgramResult dut = run_polyglide(words);
-  EXPECT_EQ(dut.status, 0) << dut.err;
-  return json::parse(dut.out);
-}
 
 void refused(const std::vector<std::string>& words, const std::string& rule) {
   const ProgramResult dut = run_polyglide(words);
@@ -26,7 +20,7 @@ void refused(const std::vector<std::string>& words, const std::string& rule) {
 }
 
 TEST(WorkspaceCommand, OrientationsAtAPlaceSayHowFarAndWhy) {
-  const json dut = answer({"workspace", "hexapod-6ups", "--orientations-at", "0,0,20", "--json"});
+  const json dut = answer({"workspace", "hexapod-6ups", "--orientations-at", "0,0,20"});
   EXPECT_EQ(dut.at("rotations"), "ABC");
   EXPECT_TRUE(dut.at("reachable").get<bool>());
   EXPECT_GT(dut.at("tilt_in_every_direction").at("tilt").get<double>(), 0.3);
@@ -35,8 +29,8 @@ TEST(WorkspaceCommand, OrientationsAtAPlaceSayHowFarAndWhy) {
 }
 
 TEST(WorkspaceCommand, TotalOrientationIsSmallerAndSaysWhatWasAsked) {
-  const json dut = answer({"workspace", "table1-6", "--total-orientation", "20", "--json"});
-  const json all = answer({"workspace", "table1-6", "--json"});
+  const json dut = answer({"workspace", "table1-6", "--total-orientation", "20"});
+  const json all = answer({"workspace", "table1-6"});
   EXPECT_LT(dut.at("volume").get<double>(), all.at("volume").get<double>());
   EXPECT_GT(dut.at("orientations").at("samples").get<int>(), 5);
   EXPECT_EQ(dut.at("bounds"), "estimated");
@@ -58,9 +52,21 @@ TEST(WorkspaceCommand, ASingularityMapIsDrawn) {
 }
 
 TEST(WorkspaceCommand, AnEmptyWorkspaceSaysWhatStopsHome) {
-  EXPECT_EQ(answer({"workspace", "table1-4", "--json"}).at("stopped_by"), "singularity");
-  EXPECT_EQ(answer({"workspace", "delta-1", "--turned", "10,0,0", "--json"}).at("stopped_by"),
-            "motion");
+  EXPECT_EQ(answer({"workspace", "table1-4"}).at("stopped_by"), "singularity");
+  EXPECT_EQ(answer({"workspace", "delta-1", "--turned", "10,0,0"}).at("stopped_by"), "motion");
+}
+
+TEST(WorkspaceCommand, PlanarMachinesHaveAreas) {
+  for (const char* name : {"five-bar", "3-rpr-planar", "3-rrr-planar", "3-prr-planar"}) {
+    const json dut = answer({"workspace", name});
+    const double area = dut.at("area").get<double>();
+    EXPECT_EQ(dut.at("method"), "quadrature") << name;
+    EXPECT_EQ(dut.at("volume"), 0) << name;
+    EXPECT_GT(area, dut.at("area_bounds").at(0).get<double>()) << name;
+    EXPECT_LT(area, dut.at("area_bounds").at(1).get<double>()) << name;
+    EXPECT_LT(dut.at("area_error").get<double>(), 2e-6 * area) << name;
+    EXPECT_GE(dut.at("reach").get<double>(), area * (1 - 1e-5)) << name;
+  }
 }
 
 TEST(WorkspaceCommand, RefusesWhatCannotBe) {
