@@ -1,6 +1,7 @@
 #include "kinematics/branches.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "kinematics/manifold.hpp"
 #include "kinematics/second_order.hpp"
@@ -8,8 +9,8 @@
 namespace polyglide {
 namespace {
 
-constexpr double kShort = 0.03;        // first step: tangents still tell branches apart
-constexpr double kStraight = 0.15;     // of a step: a smooth manifold leaves its tangent no further
+constexpr double kShort = 0.03;     // first step: tangents still tell branches apart
+constexpr double kStraight = 0.15;  // of a step: a smooth manifold leaves its tangent no further
 constexpr int kQuick = 10;  // Newton iterations; more after a short step mean that it ended where
                             // a freedom that does not continue is still instantaneous
 constexpr double kClear = 1e5;         // a rank gap below it tells no shaky freedoms
@@ -20,7 +21,7 @@ constexpr double kNearSingular = 0.1;  // of the smallest singular value one ste
 constexpr double kSameBranch = 0.35;   // sine of the angle between tangent spaces, 20 degrees
 constexpr double kLong = 0.2;          // a leap, where short steps show nothing
 constexpr double kNearlyClosed = 1e-7;
-constexpr double kLeapt = 0.3;  // of a leap: a posture nearer to home has fallen back
+constexpr double kLeapt = 0.3;     // of a leap: a posture nearer to home has fallen back
 constexpr std::size_t kTries = 3;  // members of a component of directions that are tried
 
 /// What a step may be like: any that closes, one that does not bend much, or one as on smooth
@@ -71,6 +72,9 @@ class Explorer {
   bool leap(Posture& posture, const Eigen::VectorXd& rates);
   bool leave_smoothly(const Eigen::MatrixXd& kernel);
   [[nodiscard]] std::vector<Eigen::VectorXd> translations(const Eigen::MatrixXd& kernel);
+  std::optional<Place> near_home(const Eigen::VectorXd& rates);
+  void leave_along(const Eigen::MatrixXd& kernel, const std::vector<Eigen::VectorXd>& component);
+  void leap_along(const Eigen::MatrixXd& kernel, const std::vector<Eigen::VectorXd>& component);
   void leave_by_second_order(const Eigen::MatrixXd& kernel);
   void meet(const Place& near);
   bool is_shaky(Branch& branch, const Place& near);
@@ -82,7 +86,7 @@ class Explorer {
   WalkOptions options_;
   std::mt19937_64& random_;
   std::vector<int> active_;
-  bool slow_ = false;  ///< a step ended where a freedom that does not continue is instantaneous
+  bool slow_ = false;    ///< a step ended where a freedom that does not continue is instantaneous
   bool nearly_ = false;  ///< a way was turned down that closes nearly
   Departure result_;
 };
@@ -182,7 +186,8 @@ bool Explorer::is_shaky(Branch& branch, const Place& near) {
   return branch.excess > 0;
 }
 
-/// From a short step away to generic postures; whether any walk got on.
+/// From a short step away to generic postures; whether any walk got on. A freedom that does not
+/// continue may show only far from home, where Newton's method then creeps up on the postures.
 bool Explorer::walk_far(Branch& branch, const Place& near) {
   bool moved = false;
   slow_ = false;
@@ -267,43 +272,56 @@ std::vector<Eigen::VectorXd> Explorer::translations(const Eigen::MatrixXd& kerne
   return directions;
 }
 
-/// Every component of the second-order solution is tried along a few of its members, each way: a
-/// cusp, for example, can be left one way only. Where that sets no condition although home is not
-/// smooth, or leads nowhere, conditions of higher order are at work and leaps have to find the way.
+/// A posture a short way off home in a direction. Where Newton's method only creeps up on it, the
+/// conditions that stop a freedom are too weak there to be met well, and it is looked for farther
+/// out.
+std::optional<Place> Explorer::near_home(const Eigen::VectorXd& rates) {
+  Posture near = home_, farther = home_;
+  slow_ = false;
+  if (!step(near, rates, kShort, Way::any)) return std::nullopt;
+  if (slow_ && leap(farther, rates)) near = std::move(farther);
+  Freedoms free = freedoms_at(model_, near, Certainty::screened);
+  return Place{std::move(near), std::move(free)};
+}
+
+/// Along a few members of a component, each way, until one leads off: a cusp, for example, can be
+/// left one way only.
+void Explorer::leave_along(const Eigen::MatrixXd& kernel,
+                           const std::vector<Eigen::VectorXd>& component) {
+  for (std::size_t i = 0; i < std::min(kTries, component.size()); ++i) {
+    for (const int side : {1, -1}) {
+      const std::optional<Place> near = near_home(side * (kernel * component[i]));
+      if (!near) continue;
+      if (span_of(component) > kernel_of(near->free).cols()) result_.cone = true;
+      return meet(*near);
+    }
+  }
+}
+
+void Explorer::leap_along(const Eigen::MatrixXd& kernel,
+                          const std::vector<Eigen::VectorXd>& component) {
+  for (std::size_t i = 0; i < std::min<std::size_t>(options_.leaps, component.size()); ++i)
+    for (const int side : {1, -1}) {
+      Posture near = home_;
+      if (!leap(near, side * (kernel * component[i]))) continue;
+      result_.blind = true;
+      Freedoms free = freedoms_at(model_, near, Certainty::screened);
+      meet({std::move(near), std::move(free)});
+    }
+}
+
+/// Tries every component of the second-order solution. Where that sets no condition although home
+/// is not smooth, or leads nowhere, conditions of higher order are at work and leaps have to find
+/// the way.
 void Explorer::leave_by_second_order(const Eigen::MatrixXd& kernel) {
   SecondOrder allowed = second_order(model_, home_, kernel, active_, random_);
   result_.obstructions = allowed.obstructions;
   result_.refuted = allowed.components.empty();
   if (slow_) allowed.components.push_back(translations(kernel));
-  for (const auto& component : allowed.components) {
-    if (allowed.obstructions == 0) break;
-    bool left = false;
-    for (std::size_t i = 0; i < std::min(kTries, component.size()) && !left; ++i)
-      for (const int side : {1, -1}) {
-        Posture near = home_;
-        slow_ = false;
-        if (left || !step(near, side * (kernel * component[i]), kShort, Way::any)) continue;
-        if (slow_) {
-          // Close to home the conditions that stop a freedom may be too weak to be met well.
-          Posture farther = home_;
-          if (leap(farther, side * (kernel * component[i]))) near = std::move(farther);
-        }
-        const Freedoms free = freedoms_at(model_, near, Certainty::screened);
-        if (span_of(component) > kernel_of(free).cols()) result_.cone = true;
-        meet({std::move(near), free});
-        left = true;
-      }
-  }
+  if (allowed.obstructions > 0)
+    for (const auto& component : allowed.components) leave_along(kernel, component);
   if (!result_.branches.empty()) return;
-  for (const auto& component : allowed.components)
-    for (std::size_t i = 0; i < std::min<std::size_t>(options_.leaps, component.size()); ++i)
-      for (const int side : {1, -1}) {
-        Posture near = home_;
-        if (!leap(near, side * (kernel * component[i]))) continue;
-        result_.blind = true;
-        const Freedoms free = freedoms_at(model_, near, Certainty::screened);
-        meet({std::move(near), free});
-      }
+  for (const auto& component : allowed.components) leap_along(kernel, component);
 }
 
 Departure Explorer::leave(const Eigen::MatrixXd& kernel) {

@@ -18,8 +18,8 @@ constexpr double kNudge = 0.01;    // a polishing step: more is a drawing's nois
 constexpr double kWeakest = 1e-9;  // of the largest pivot: less is rounding
 constexpr double kLate = 1e-3;     // residual below which Newton at a regular posture at least
 constexpr double kLinear = 0.05;   // divides it by twenty each time
-constexpr int kPatience = 3;          // iterations without progress before Newton gives up
-constexpr double kProgress = 0.7;     // part of the best residual so far that counts as progress
+constexpr int kPatience = 3;       // iterations without progress before Newton gives up
+constexpr double kProgress = 0.7;  // part of the best residual so far that counts as progress
 constexpr double kLongestStep = 0.6;  // [rad] of the fastest joint, keeps Newton on its branch
 
 /// (J Jᵀ + λ)⁻¹ with λ far below any singular value that matters.
@@ -98,8 +98,8 @@ Projection pull_back(const Model& model, Posture& posture, const std::vector<int
   int idle = 0;
   std::optional<Linearised> linearised;
   for (;; ++result.iterations) {
-    Demand demand = goal ? loops_and(goal, model, posture)
-                         : Demand{closure_residual(model, posture), {}};
+    Demand demand =
+        goal ? loops_and(goal, model, posture) : Demand{closure_residual(model, posture), {}};
     result.residual = demand.residual.cwiseAbs().maxCoeff();
     if (result.residual < kClosed || result.iterations == kMostIterations ||
         !(result.residual < 1e3))

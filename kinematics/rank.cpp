@@ -126,7 +126,8 @@ Kernel kernel_of_nothing(Eigen::Index cols) {
 Kernel kernel_of(const Eigen::MatrixXd& matrix, double reference) {
   if (matrix.size() == 0) return kernel_of_nothing(matrix.cols());
   const RankDecision decision = decide_rank(singular_values(matrix), reference);
-  if (auto kernel = kernel_by_pivots(matrix, reference); kernel && kernel->decision.rank == decision.rank) {
+  if (auto kernel = kernel_by_pivots(matrix, reference);
+      kernel && kernel->decision.rank == decision.rank) {
     kernel->decision = decision;
     return *std::move(kernel);
   }

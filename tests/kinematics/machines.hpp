@@ -53,6 +53,24 @@ inline Mechanism guided(const std::vector<Limb>& limbs, const Vector3& tool = Ve
   return mechanism;
 }
 
+/// Base 0, platform 1 and per point of it an equal rod with balls at both ends, which reaches
+/// `rod` from the base to the point. Nothing is driven.
+inline Mechanism table_on_rods(const std::vector<Vector3>& points, const Vector3& rod) {
+  Mechanism mechanism;
+  mechanism.name = "table on rods";
+  mechanism.bodies = {"base", "platform"};
+  mechanism.platform = 1;
+  for (const Vector3& point : points) {
+    const std::string name = "rod" + std::to_string(mechanism.bodies.size() - 1);
+    const int body = static_cast<int>(mechanism.bodies.size());
+    mechanism.bodies.push_back(name);
+    mechanism.joints.push_back(
+        joint_of(name + ".base", JointType::spherical, 0, body, point - rod));
+    mechanism.joints.push_back(joint_of(name + ".top", JointType::spherical, body, 1, point));
+  }
+  return mechanism;
+}
+
 /// Base 0, platform 1, per limb a driven telescope with balls at both ends.
 inline Mechanism strutted(const std::vector<std::pair<Vector3, Vector3>>& limbs,
                           const Range& stroke = {}) {

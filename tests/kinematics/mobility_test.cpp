@@ -1,9 +1,14 @@
 #include "kinematics/mobility.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <random>
 
 #include "cases.hpp"
 #include "catalog/json_file.hpp"
+#include "kinematics/manifold.hpp"
+#include "machines.hpp"
 
 namespace polyglide {
 namespace {
@@ -85,6 +90,71 @@ TEST(TableOne, OneChangedJointChangesTheVerdict) {
   EXPECT_EQ(
       check(with_end("table1-2", 0, "platform", {{"joint", "universal"}, {"axis", "x"}})).verdict,
       Verdict::singular_home);
+}
+
+// --- Freedoms that are instantaneous everywhere and continue nowhere ---
+//
+// On equal parallel rods a table keeps parallel: |R aᵢ + t - aᵢ| = |t₀| for four points or more
+// that are generic leaves R = 1, |t| = |t₀|. But its rods push along one direction only, so that at
+// every posture it can also begin to turn about that direction.
+
+TEST(Mobility, OfATableOnEqualParallelRodsIsTranslation) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> part(-1, 1);
+  for (int count : {4, 5, 6})
+    for (const double height : {0.0, 0.5}) {
+      SCOPED_TRACE(fmt::format("{} rods, points within {} m of a plane", count, height));
+      std::vector<Vector3> points;
+      for (int i = 0; i < count; ++i) {
+        const double angle = 2 * M_PI * (i + 0.3 * part(random)) / count;
+        const double radius = 1 + 0.3 * part(random);
+        points.push_back(
+            {radius * std::cos(angle), radius * std::sin(angle), height * part(random)});
+      }
+      for (const Vector3& rod : {Vector3(0, 0, 1), Vector3(0.3, -0.2, 1)}) {
+        const MobilityReport report = check(table_on_rods(points, rod));
+        EXPECT_EQ(report.verdict, Verdict::uncertain);
+        EXPECT_EQ(report.home, count + 3);
+        EXPECT_EQ(report.finite, count + 2);
+        EXPECT_EQ(report.idle, count);
+        EXPECT_EQ(report.pattern, "2T0R");
+        EXPECT_EQ(report.redundant_constraints, count - 3);
+      }
+    }
+}
+
+TEST(Mobility, OfATableOnFourUprightRodsOnARectangleIsTranslation) {
+  // (R₁₂ + R₂₁) = 4 q₁ q₂ = 0 and (Rᵀt - t) ⟂ z: branches R = 1, q₁ = 0 and q₂ = 0, two freedoms
+  // each.
+  const MobilityReport report =
+      check(table_on_rods({{1, 0.6, 1}, {-1, 0.6, 1}, {-1, -0.6, 1}, {1, -0.6, 1}}, {0, 0, 1}));
+  EXPECT_EQ(report.verdict, Verdict::uncertain);
+  EXPECT_EQ(report.home, 7);
+  EXPECT_EQ(report.finite, 6);
+  EXPECT_EQ(report.pattern, "2T0R");
+  EXPECT_TRUE(report.motions_meet);
+}
+
+TEST(Polish, TakesAPostureToTheDoubleZeroNewtonCreepsUpOn) {
+  const Vector3 rod(0.3, -0.2, 1);
+  const Model model =
+      compile(table_on_rods({{1, 0.1, 1}, {0.5, 0.9, 1}, {-0.6, 0.7, 1}, {-1.1, 0, 1}}, rod));
+  Posture posture = home(model);
+  // Turned about the rods' direction by 0.001 rad the loops close to 1e-6 only.
+  const Freedoms free = freedoms_at(model, posture);
+  const Kernel still = kernel_of(free.platform.bottomRows(3), 1);
+  const Eigen::VectorXd turning = free.kernel * still.basis.col(0);
+  advance(model, posture,
+          (1e-3 * turning / turning.cwiseAbs().maxCoeff()).cwiseProduct(freedom_scale(model)));
+  const std::vector<int> active = all_freedoms(model);
+  Posture crept = posture;
+  const Projection projection = project(model, crept, active);
+  EXPECT_TRUE(projection.closed);
+  EXPECT_TRUE(projection.linear);
+  const double turned = displacement(model, home(model), crept, 1);
+  EXPECT_GT(turned, 1e-6);
+  EXPECT_LT(polish(model, crept, active), 1e-15);
+  EXPECT_LT(displacement(model, home(model), crept, 1), 1e-7);
 }
 
 // --- Limits ---
