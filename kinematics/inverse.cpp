@@ -70,6 +70,11 @@ InverseResult no_solution(const Machine& machine, const std::string& limit) {
   return result;
 }
 
+/// The budget of a way is spent before it begins.
+std::string too_far() {
+  return fmt::format("reach: not looked for beyond {:.0f} times the machine's size", kFarthestWay);
+}
+
 /// The asked coordinate that a pure machine cannot command, or "".
 std::string not_commanded(const Machine& machine, const Coordinates& asked) {
   Coordinates rest = asked;
@@ -106,7 +111,9 @@ InverseResult solve_inverse_general(const Machine& machine, const Pose& pose, Po
   // Continuation in steps short enough to stay on the assembly mode.
   const std::vector<int> active = all_freedoms(model);
   constexpr double kStep = 0.25, kShortest = 1e-4;
-  double done = 0, step = std::min(1.0, kStep / std::max(scaled.cwiseAbs().maxCoeff(), 1e-9));
+  const double way = scaled.cwiseAbs().maxCoeff();
+  if (!(way < kFarthestWay)) return no_solution(machine, too_far());
+  double done = 0, step = std::min(1.0, kStep / std::max(way, 1e-9));
   double residual = 0;
   bool arrived = false;
   while (!arrived) {

@@ -95,7 +95,7 @@ Projection pull_back(const Model& model, Posture& posture, const std::vector<int
   for (;; ++result.iterations) {
     Demand demand = goal ? loops_and(goal, model, posture)
                          : Demand{closure_residual(model, posture), {}};
-    result.residual = demand.residual.cwiseAbs().maxCoeff();
+    result.residual = demand.residual.lpNorm<Eigen::Infinity>();  // 0 when nothing is asked
     if (result.residual < kClosed || result.iterations == kMostIterations ||
         !(result.residual < 1e3))
       break;

@@ -7,6 +7,10 @@
 
 namespace polyglide {
 
+/// [sizes of the machine, or rad] No posture is sought farther than this: the steps to it have an
+/// end.
+constexpr double kFarthestWay = 1e4;
+
 /// Freedoms that may move: all of them, or all but the drives.
 [[nodiscard]] std::vector<int> all_freedoms(const Model& model);
 [[nodiscard]] std::vector<int> passive_freedoms(const Model& model);
