@@ -31,11 +31,7 @@ bool solve_forward_from(const Machine& machine, const Eigen::VectorXd& drives, P
   const Model& model = machine.model;
   const std::vector<int> passive = passive_freedoms(model);
   const Eigen::VectorXd start = drive_positions(model, posture);
-  double farthest = 1e-9;
-  for (Eigen::Index d = 0; d < drives.size(); ++d) {
-    const double scale = model.freedoms[model.drives[d]].translational ? model.size : 1;
-    farthest = std::max(farthest, std::abs(drives[d] - start[d]) / scale);
-  }
+  const double farthest = std::max(1e-9, drive_distance(model, start, drives));
   if (!(farthest < kFarthestWay)) return false;
   constexpr double kStep = 0.25, kShortest = 1e-4;
   Posture current = posture;
@@ -75,6 +71,7 @@ std::vector<ForwardSolution> solve_forward(const Machine& machine, const Eigen::
   search.seed = seed;
   search.regions = false;
   if (all) return find_assembly_modes(machine, drives, search).solutions;
+  if (!(drive_distance(machine.model, 0 * drives, drives) < kFarthestWay)) return {};
   if (auto own = follow_from_home(machine, drives)) return {std::move(*own)};
   // Where the drives cannot be followed from home, the closed form still knows.
   std::vector<ForwardSolution> solutions = three_sphere_modes(machine, drives);

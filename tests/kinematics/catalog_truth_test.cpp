@@ -15,7 +15,7 @@ using namespace polyglide::fixtures;
 
 const nlohmann::json& published() {
   static const nlohmann::json kRecords =
-      read_json(std::string(POLYGLIDE_SOURCE_DIR) + "/tests/truth/catalog.json");
+      read_json(POLYGLIDE_SOURCE_DIR "/tests/truth/catalog.json");
   return kRecords;
 }
 
