@@ -137,9 +137,7 @@ std::vector<Condition> conditions_of(const CatalogQuery& query) {
 void add_search_options(CLI::App& app, CatalogQuery& query) {
   app.add_option("--motion", query.motion, "Only machines that move so: 3T1R, or letters as XYZA")
       ->type_name("PATTERN");
-  app.add_option("--drives", query.drives, "Only machines with so many drives")
-      ->check(whole_number())
-      ->type_name("N");
+  app.add_option("--drives", query.drives, "Only machines with so many drives")->type_name("N");
   app.add_option("--drive-type", query.drive_type,
                  "Only machines whose drives are all prismatic, or all revolute")
       ->type_name("TYPE");
@@ -166,6 +164,9 @@ void check_query(CatalogQuery& query) {
   if (query.limb.find_first_not_of(kJointLetters) != std::string::npos)
     mistakes.push_back(wrong_argument(
         query.limb, fmt::format("--limb takes joint letters ({}), as PUU", kJointLetters)));
+  if (query.drives && *query.drives < 0)
+    mistakes.push_back(
+        wrong_argument(std::to_string(*query.drives), "--drives takes a number from 0 on"));
   if (!mistakes.empty()) throw InputError(std::move(mistakes));
 }
 

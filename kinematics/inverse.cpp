@@ -82,7 +82,7 @@ std::string not_commanded(const Machine& machine, const Coordinates& asked) {
   for (int i = 0; i < 6; ++i)
     if (std::abs(rest[i]) > 1e-9)
       return fmt::format("motion {} is not free on this machine (task axes {})", "XYZABC"[i],
-                         axes_name(machine.task.axes));
+                         machine.task.axes.empty() ? "none" : axes_name(machine.task.axes));
   return "";
 }
 
@@ -141,7 +141,7 @@ InverseResult solve_inverse_general(const Machine& machine, const Pose& pose, Po
 
 InverseResult solve_inverse(const Machine& machine, const Pose& pose,
                             const std::vector<std::string>& ignored) {
-  if (machine.task.pure) {
+  if (machine.task.pure || machine.task.axes.empty()) {
     const std::string stray = not_commanded(machine, coordinates_of(pose));
     if (!stray.empty()) return no_solution(machine, stray);
     if (machine.legs) return solve_closed_form(machine, pose, ignored);
