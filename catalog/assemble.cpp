@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,8 +32,12 @@ Scope make_scope(const Layout& layout, const ParameterValues& values, Problems& 
     if (scope.find(name) != nullptr) continue;
     std::vector<std::string> known;
     for (const Parameter& parameter : layout.parameters) known.push_back(parameter.name);
+    const std::string near = did_you_mean(name, known);
     problems.add({layout.file, "/parameters", '"' + name + '"',
-                  layout.name + " has no parameter of this name", did_you_mean(name, known)});
+                  layout.name + " has no parameter of this name",
+                  !near.empty()   ? near
+                  : known.empty() ? "it has none"
+                                  : fmt::format("it has {}", fmt::join(known, ", "))});
   }
   return scope;
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <iostream>
+#include <ranges>
+#include <regex>
 
 #include "cli/commands.hpp"
 #include "cli/machines.hpp"
@@ -47,27 +49,35 @@ void print_list(const char* title, const std::vector<std::string>& items) {
   for (const std::string& item : items) std::cout << "    " << item << "\n";
 }
 
-/// Bodies with their share of the fastest one's speed.
-std::string bodies_text(const FreedomMode& mode, const Mechanism& mechanism) {
+/// A motion, and the bodies that take part with their share of the fastest one's speed.
+std::string motion_text(const std::string& about, const std::vector<BodyMotion>& bodies,
+                        const Mechanism& mechanism) {
   constexpr std::size_t kShown = 5;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kShown, mode.bodies.size()); ++i)
-    text += fmt::format("{}{} {:.0f} %", i > 0 ? ", " : "", mechanism.bodies[mode.bodies[i].body],
-                        100 * mode.bodies[i].speed);
-  if (mode.bodies.size() > kShown) text += fmt::format(" and {} more", mode.bodies.size() - kShown);
-  return text;
+  std::vector<std::string> shares;
+  for (const BodyMotion& body : bodies | std::views::take(kShown))
+    shares.push_back(fmt::format("{} {:.0f} %", mechanism.bodies[body.body], 100 * body.speed));
+  const std::string more =
+      bodies.size() > kShown ? fmt::format(" and {} more", bodies.size() - kShown) : "";
+  return fmt::format("{}\n      moving: {}{}", about, fmt::join(shares, ", "), more);
 }
 
-std::string wrenches_text(const std::vector<Screw>& wrenches) {
-  std::string text;
-  for (const Screw& wrench : wrenches) text += (text.empty() ? "" : "; ") + describe_wrench(wrench);
-  return text.empty() ? "none" : text;
+/// A limb, and below it every wrench on a line of its own.
+std::string limb_text(const LimbWrenches& limb) {
+  std::string text = limb.name;
+  for (const Screw& wrench : limb.constraints) text += "\n      " + describe_wrench(wrench);
+  for (const Screw& wrench : limb.actuations) text += "\n      driven: " + describe_wrench(wrench);
+  return limb.constraints.empty() && limb.actuations.empty() ? text + "\n      nothing" : text;
+}
+
+/// A redundant constraint, every loop that carries a part of it on a line of its own.
+std::string constraint_text(const RedundantConstraint& constraint) {
+  return std::regex_replace(constraint.about, std::regex(", with "), ",\n      with ");
 }
 
 void print_evidence(const MobilityReport& report, const Mechanism& mechanism) {
   std::vector<std::string> items;
   for (const FreedomMode& mode : report.modes)
-    items.push_back(mode.about + " (moving: " + bodies_text(mode, mechanism) + ")");
+    items.push_back(motion_text(mode.about, mode.bodies, mechanism));
   print_list("Freedoms that are left", items);
   items.clear();
   if (report.branches.size() > 1)
@@ -76,21 +86,19 @@ void print_evidence(const MobilityReport& report, const Mechanism& mechanism) {
                                   plural(branch.dimension)));
   print_list("Motion branches that meet at home", items);
   items.clear();
-  for (const PlatformMotion& motion : report.platform_motions) items.push_back(motion.about);
+  for (const PlatformMotion& motion : report.platform_motions)
+    items.push_back(motion_text(motion.about, motion.bodies, mechanism));
   print_list("What the platform can do at home", items);
   items.clear();
   for (const IdleFreedom& idle : report.idle_freedoms) items.push_back(idle.about);
   print_list("Idle freedoms, which move no point of the platform", items);
   items.clear();
-  for (const RedundantConstraint& constraint : report.redundant) items.push_back(constraint.about);
+  for (const RedundantConstraint& constraint : report.redundant)
+    items.push_back(constraint_text(constraint));
   print_list("Redundant constraints", items);
-  if (report.limbs.empty()) return;
-  std::cout << "\n  What each limb bears\n";
-  std::vector<std::vector<std::string>> rows;
-  for (const LimbWrenches& limb : report.limbs)
-    rows.push_back({"    " + limb.name, wrenches_text(limb.constraints),
-                    "driven: " + wrenches_text(limb.actuations)});
-  std::cout << columns(rows);
+  items.clear();
+  for (const LimbWrenches& limb : report.limbs) items.push_back(limb_text(limb));
+  print_list("What each limb bears, always and when driven", items);
 }
 
 void print_page(const MobilityReport& report, const Mechanism& mechanism) {

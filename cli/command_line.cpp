@@ -47,7 +47,7 @@ CommandLine::CommandLine(std::string_view name, std::string_view about,
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   app_.add_option("--seed", seed_, "Seed of everything random (default 1)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number())
       ->type_name("N");
   app_.add_flag("--quiet", quiet_, "No progress and no remarks on standard error");
 }
@@ -78,6 +78,17 @@ Diagnostic wrong_argument(const std::string& word, std::string rule, const std::
           .value = word.empty() ? "" : '"' + word + '"',
           .rule = std::move(rule),
           .hint = nearest.empty() ? "" : "did you mean " + nearest + "?"};
+}
+
+CLI::Validator whole_number() {
+  return CLI::Validator(
+      [](const std::string& word) {
+        const bool digits =
+            !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
+        return digits && word.size() <= 18 ? std::string()
+                                           : "\"" + word + "\" is no whole number from 0 on";
+      },
+      "");
 }
 
 std::vector<double> parse_numbers(std::string_view text, std::string_view option) {

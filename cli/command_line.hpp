@@ -53,6 +53,10 @@ class CommandLine {
 [[nodiscard]] Diagnostic wrong_argument(const std::string& word, std::string rule,
                                         const std::string& nearest = "");
 
+/// Accepts whole numbers from 0 on, of 18 digits at most; CLI11's own check shows a range of
+/// doubles.
+[[nodiscard]] CLI::Validator whole_number();
+
 /// Numbers separated by commas, as in `--ik 10,0,-5`.
 /// @param option what they were given to, for messages.
 /// @throws InputError when one of them is not a finite number.

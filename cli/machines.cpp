@@ -1,8 +1,13 @@
 #include "cli/machines.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
 #include <utility>
 
 #include "catalog/catalog.hpp"
+#include "kinematics/evaluate.hpp"
 
 namespace polyglide {
 namespace {
@@ -22,11 +27,12 @@ std::pair<std::string, double> parse_setting(const std::string& setting) {
     throw InputError({wrong_argument(setting, "--set takes parameter=value")});
   }
   const std::string name = setting.substr(0, equals);
-  const std::vector<double> value = parse_numbers(setting.substr(equals + 1), "--set " + name);
-  if (value.size() != 1) {
-    throw InputError({wrong_argument(setting, "--set takes one number for a parameter")});
+  try {
+    const std::vector<double> value = parse_numbers(setting.substr(equals + 1), "--set");
+    if (value.size() == 1) return {name, value.front()};
+  } catch (const InputError&) {  // said below, with the whole word
   }
-  return {name, value.front()};
+  throw InputError({wrong_argument(setting, "--set takes one finite number for a parameter")});
 }
 
 }  // namespace
@@ -60,6 +66,19 @@ std::vector<ChosenMachine> load_machines(const MachineOptions& options) {
   }
   if (!mistakes.empty()) throw InputError(std::move(mistakes));
   return machines;
+}
+
+void remark_unknown_limits(const std::vector<std::string>& ignored, const Machine& machine) {
+  for (const std::string& word : ignored) {
+    std::vector<std::string> names = Evaluator(machine).limit_names();
+    names.emplace_back("singularity");
+    const bool known = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return name == word || name.substr(0, name.find(' ')) == word;
+    });
+    if (!known)
+      std::cerr << fmt::format("{} has no limit {}: {} is not ignored\n",
+                               machine.model.mechanism.name, word, word);
+  }
 }
 
 }  // namespace polyglide

@@ -5,6 +5,7 @@
 
 #include "catalog/layout.hpp"
 #include "cli/command_line.hpp"
+#include "kinematics/solve.hpp"
 
 namespace polyglide {
 
@@ -26,5 +27,9 @@ struct ChosenMachine {
 /// Loads the named machines in their order; a setting counts for each of them.
 /// @throws InputError with the mistakes of all of them.
 [[nodiscard]] std::vector<ChosenMachine> load_machines(const MachineOptions& options);
+
+/// Says on standard error which of these words names no limit of the machine: most likely it is
+/// misspelt.
+void remark_unknown_limits(const std::vector<std::string>& ignored, const Machine& machine);
 
 }  // namespace polyglide

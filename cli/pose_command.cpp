@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "cli/commands.hpp"
@@ -8,6 +10,8 @@
 #include "cli/print.hpp"
 #include "cli/singularities.hpp"
 #include "kinematics/assembly_modes.hpp"
+#include "kinematics/limits.hpp"
+#include "kinematics/motion.hpp"
 #include "kinematics/solve.hpp"
 
 namespace polyglide {
@@ -47,6 +51,30 @@ std::string add_indices(const Machine& machine, const Pose& pose, const Eigen::V
   return text_of(*indices, springs);
 }
 
+/// The first of these drive positions beyond its stroke, "" when none is.
+std::string broken_stroke(const Model& model, const Eigen::VectorXd& drives,
+                          const std::vector<std::string>& ignored) {
+  Posture posture = home(model);
+  posture.q(model.drives) = drives;
+  for (const int drive : model.drives) {
+    const std::string limit = broken_range(model, posture, model.freedoms[drive].joint);
+    if (!limit.empty() && !is_ignored(limit, ignored)) return limit;
+  }
+  return "";
+}
+
+/// Coordinates asked for that this machine cannot command and that came out otherwise.
+std::string dependent_coordinates(const Machine& machine, const Pose& asked, const Pose& found) {
+  const auto wanted = coordinates_of(asked), got = coordinates_of(found);
+  std::string letters;
+  for (int axis = 0; axis < 6; ++axis) {
+    const double miss = std::abs(wanted[axis] - got[axis]) / (axis < 3 ? machine.model.size : 1);
+    const bool free = std::ranges::count(machine.task.axes, axis) > 0;
+    if (!free && wanted[axis] != 0 && miss > 1e-6) letters += "XYZABC"[axis];
+  }
+  return letters;
+}
+
 ordered_json inverse(const Machine& machine, const Pose& pose,
                      const std::vector<std::string>& ignored, const Springs& springs, bool json) {
   const InverseResult result = solve_inverse(machine, pose, ignored);
@@ -61,7 +89,12 @@ ordered_json inverse(const Machine& machine, const Pose& pose,
   std::cout << machine.model.mechanism.name << ": "
             << (result.reachable ? "reachable" : "not reachable: " + result.limit) << "\n";
   if (!result.reachable) return document;
-  std::cout << "  pose from home " << pose_text(result.pose) << "\n  drives from home:\n";
+  std::cout << "  pose from home " << pose_text(result.pose) << "\n";
+  if (const std::string letters = dependent_coordinates(machine, pose, result.pose);
+      !letters.empty())
+    std::cout << fmt::format("    {} cannot be commanded here and follows from {}\n", letters,
+                             axes_name(machine.task.axes));
+  std::cout << "  drives from home:\n";
   for (int d = 0; d < result.drives.size(); ++d)
     std::cout << fmt::format(
         "    {:<16} {}\n", drive_name(machine.model, d),
@@ -124,7 +157,8 @@ void print_modes(const Machine& machine, const AssemblyModes& modes,
 }
 
 ordered_json forward(const Machine& machine, const std::string& text, bool all,
-                     const Springs& springs, std::uint64_t seed, bool json) {
+                     const std::vector<std::string>& ignored, const Springs& springs,
+                     std::uint64_t seed, bool json) {
   AssemblySearch search;
   search.seed = seed;
   const Eigen::VectorXd drives = read_drives(text, machine.model);
@@ -134,6 +168,8 @@ ordered_json forward(const Machine& machine, const std::string& text, bool all,
   else
     modes.solutions = solve_forward(machine, drives, false, seed);
   ordered_json document{{"name", machine.model.mechanism.name}, {"count", modes.solutions.size()}};
+  const std::string limit = broken_stroke(machine.model, drives, ignored);
+  document["limit"] = limit.empty() ? ordered_json() : ordered_json(limit);
   document["solutions"] = ordered_json::array();
   std::vector<std::string> indices;
   for (const ForwardSolution& solution : modes.solutions) {
@@ -143,6 +179,7 @@ ordered_json forward(const Machine& machine, const std::string& text, bool all,
   }
   if (all) document["completeness"] = completeness_json(modes.completeness);
   if (!json) print_modes(machine, modes, indices, all);
+  if (!json && !limit.empty()) std::cout << "  these drive positions are beyond " << limit << "\n";
   return document;
 }
 
@@ -178,12 +215,15 @@ int run_pose(CommandLine& line) {
   if (ik.empty() && fk.empty())
     throw InputError({wrong_argument("", "pose needs --ik x,y,z[,a,b,c] or --fk q1,q2,…")});
 
+  if (!questions.to.empty()) static_cast<void>(read_pose(questions.to, "--to", Units{}));
+
   std::vector<ordered_json> documents;
   for (const ChosenMachine& chosen : load_machines(options)) {
     const Machine machine = prepare(chosen.mechanism);
     const Springs springs = springs_of(yields, machine);
+    if (!line.quiet()) remark_unknown_limits(ignored, machine);
     if (ik.empty()) {
-      documents.push_back(forward(machine, fk, all, springs, line.seed(), line.json()));
+      documents.push_back(forward(machine, fk, all, ignored, springs, line.seed(), line.json()));
       continue;
     }
     const Pose pose = read_pose(ik, "--ik", chosen.mechanism.units);

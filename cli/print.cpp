@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <numbers>
 #include <utility>
@@ -10,10 +11,10 @@
 namespace polyglide {
 namespace {
 
-/// Six significant digits, and never "-0".
+/// Six significant digits [mm or degrees]; rounding errors are 0, and never "-0".
 std::string number(double value) {
-  const std::string text = fmt::format("{:.6g}", value);
-  return text == "-0" ? "0" : text;
+  if (std::abs(value) < 1e-9) return "0";
+  return fmt::format("{:.6g}", value);
 }
 
 std::string millimetres(double metres) { return number(metres * 1e3); }

@@ -214,20 +214,6 @@ CLI::Validator between(double least, double most) {
       fmt::format("{:g} to {:g}", least, most));
 }
 
-/// A limit that is ignored by a name that no limit has is most likely misspelt.
-void remark_unknown(const std::vector<std::string>& ignored, const Machine& machine) {
-  for (const std::string& word : ignored) {
-    std::vector<std::string> names = Evaluator(machine).limit_names();
-    names.emplace_back("singularity");
-    const bool known = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-      return name == word || name.substr(0, name.find(' ')) == word;
-    });
-    if (!known)
-      std::cerr << fmt::format("{} has no limit {}: {} is not ignored\n",
-                               machine.model.mechanism.name, word, word);
-  }
-}
-
 }  // namespace
 
 int run_workspace(CommandLine& line) {
@@ -285,7 +271,7 @@ int run_workspace(CommandLine& line) {
   std::vector<ordered_json> documents;
   for (const ChosenMachine& chosen : machines) {
     if (!asked.how.ignored.empty() && !line.quiet())
-      remark_unknown(asked.how.ignored, prepare(chosen.mechanism));
+      remark_unknown_limits(asked.how.ignored, prepare(chosen.mechanism));
     documents.push_back(asked.certify      ? certify(chosen, asked, line.json())
                         : at->count() > 0  ? orientations(chosen, asked, line)
                         : map->count() > 0 ? singularities(chosen, asked, line)

@@ -305,6 +305,11 @@ AssemblyModes find_assembly_modes(const Machine& machine, const Eigen::VectorXd&
   const Model& model = machine.model;
   AssemblyModes result;
   Completeness& completeness = result.completeness;
+  if (!(drive_distance(model, 0 * drives, drives) < kFarthestWay)) {
+    completeness.stopped =
+        fmt::format("drives farther than {:g} sizes of the machine", kFarthestWay);
+    return result;
+  }
   if (const auto spheres = leg_spheres(machine, drives)) {
     result.solutions = three_sphere_modes(machine, drives);
     completeness.bound = 2;

@@ -214,9 +214,9 @@ class KernelRun {
 
 /// Indices of one Jacobian found the general way.
 void put_indices(const Eigen::MatrixXd& jacobian, std::size_t i, BatchResult& result) {
+  if (jacobian.size() == 0) return;  // no freedoms, or no drives
   const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(jacobian).singularValues();
   const Eigen::Index n = jacobian.cols();
-  if (n == 0) return;
   const double greatest = sigma[0], least = jacobian.rows() < n ? 0 : sigma[n - 1];
   const auto put = [i](auto& column, auto value) {
     if (!column.empty()) column[i] = value;
@@ -447,7 +447,7 @@ void Evaluator::forward_general(const DriveBatch& drives, ForwardResult& result)
       if (!found) continue;
       near = posture;
       const Pose pose = platform_pose(model, posture.bodies[model.mechanism.platform]);
-      result.residual[i] = closure_residual(model, posture).cwiseAbs().maxCoeff();
+      result.residual[i] = closure_residual(model, posture).lpNorm<Eigen::Infinity>();
       for (int k = 0; k < 3; ++k) result.pose[k][i] = pose.position[k];
       const Eigen::Quaterniond& q = pose.rotation;
       const double parts[]{q.w(), q.x(), q.y(), q.z()};

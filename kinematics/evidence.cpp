@@ -84,8 +84,11 @@ std::vector<BodyMotion> body_motions(const Model& model, const Posture& at,
     motions.push_back(motion);
   }
   std::erase_if(motions, [&](const BodyMotion& m) { return m.speed <= kMoves * fastest; });
-  std::ranges::stable_sort(motions, std::greater{}, &BodyMotion::speed);
   for (BodyMotion& motion : motions) motion.speed /= fastest;
+  // What is equal but for rounding stays in the order of the file.
+  std::ranges::stable_sort(motions, std::greater{}, [](const BodyMotion& motion) {
+    return std::lround(1e9 * motion.speed);
+  });
   return motions;
 }
 
@@ -119,44 +122,56 @@ void add_modes(const Findings& findings, MobilityReport& report) {
               all_freedoms(findings.model), report);
 }
 
-/// Twists of the platform at home, as a basis that reads well.
+/// Twists of the platform at home, as a basis that reads well, and what else moves with each.
 void add_platform_motions(const Findings& findings, MobilityReport& report) {
-  for (const Screw& twist :
-       plain_basis(findings.home_free.platform, findings.model.mechanism.tool, findings.model.size))
-    report.platform_motions.push_back({describe_twist(twist), twist});
+  const Model& model = findings.model;
+  const Freedoms& free = findings.home_free;
+  const Vector3& tool = model.mechanism.tool;
+  if (free.platform.cols() == 0) return;  // rigid at home
+  const auto solver = free.platform.completeOrthogonalDecomposition();
+  for (const Screw& twist : plain_basis(free.platform, tool, model.size)) {
+    const Vector3 w = twist.head<3>();
+    Screw at_tool;  // as the columns of free.platform
+    at_tool << w, (twist.tail<3>() + w.cross(tool)) / model.size;
+    const Eigen::VectorXd rates = free.kernel * solver.solve(at_tool);
+    report.platform_motions.push_back(
+        {describe_twist(twist), twist, body_motions(model, findings.home, rates)});
+  }
 }
 
-/// Bodies that move although the platform rests: the kernel of the platform's
-/// twist within the freedoms.
+/// Bodies that move although the platform rests: the kernel of the platform's twist within the
+/// freedoms; at home where home is like any other posture.
 void add_idle_freedoms(const Findings& findings, MobilityReport& report) {
   if (!findings.free || report.idle <= 0) return;
   const Model& model = findings.model;
-  const Svd svd = svd_of(findings.free->platform);
-  const Eigen::MatrixXd idle = sparse_basis(findings.free->kernel * svd.v.rightCols(report.idle));
-  std::set<int> seen;
+  const bool regular = report.home - report.platform_home_dof == report.idle;
+  const Posture& at = regular ? findings.home : *findings.generic;
+  const Freedoms& free = regular ? findings.home_free : *findings.free;
+  const Svd svd = svd_of(free.platform);
+  const Eigen::MatrixXd idle = sparse_basis(free.kernel * svd.v.rightCols(report.idle));
   for (Eigen::Index c = 0; c < idle.cols(); ++c) {
     IdleFreedom freedom;
-    std::vector<std::string> names;
-    for (const BodyMotion& motion : body_motions(model, *findings.generic, idle.col(c))) {
-      if (names.empty()) freedom.twist = motion.twist;
-      names.push_back(model.mechanism.bodies[motion.body]);
-      if (seen.insert(motion.body).second) report.idle_rods.push_back(names.back());
-    }
-    freedom.bodies = names;
-    freedom.about = fmt::format("{}: {}", fmt::join(names, ", "), describe_twist(freedom.twist));
+    const std::vector<BodyMotion> motions = body_motions(model, at, idle.col(c));
+    for (const BodyMotion& motion : motions)
+      freedom.bodies.push_back(model.mechanism.bodies[motion.body]);
+    freedom.twist = motions.front().twist;
+    freedom.about =
+        fmt::format("{}: {}", fmt::join(freedom.bodies, ", "), describe_twist(freedom.twist));
     report.idle_freedoms.push_back(std::move(freedom));
   }
+  std::ranges::sort(report.idle_freedoms, {}, &IdleFreedom::bodies);
+  std::set<std::string> seen;
+  for (const IdleFreedom& freedom : report.idle_freedoms)
+    for (const std::string& body : freedom.bodies)
+      if (seen.insert(body).second) report.idle_rods.push_back(body);
 }
 
-/// Joints on one loop by limb names, shortened.
+/// The limbs that a loop runs through.
 std::string loop_text(const Model& model, std::size_t loop) {
-  std::vector<std::string> names;
-  for (const auto [joint, sign] : model.loops[loop]) {
-    const std::string& name = model.mechanism.joints[joint].name;
-    const std::string limb = name.substr(0, name.rfind('.'));
-    if (std::ranges::find(names, limb) == names.end()) names.push_back(limb);
-  }
-  return fmt::format("{}", fmt::join(names, "–"));
+  std::vector<std::string> joints;
+  for (const auto [joint, sign] : model.loops[loop])
+    joints.push_back(model.mechanism.joints[joint].name);
+  return limb_names(joints);
 }
 
 /// Inner wrenches that no freedom relieves: the left kernel of the loop-closure Jacobian.
@@ -225,7 +240,7 @@ std::string describe_motion(const MobilityReport& report) {
                                 motion.amount * (motion.axis < 3 ? 1e3 : 180 / EIGEN_PI),
                                 motion.axis < 3 ? "mm" : "deg"));
   if (!along.empty())
-    words += fmt::format("; moves along with it, seen: {}", fmt::join(along, ", "));
+    words += fmt::format("; moving along with that, as far as seen: {}", fmt::join(along, ", "));
   return words;
 }
 

@@ -77,6 +77,8 @@ void measure_by_quadrature(Workspace& workspace, const Probe& probe, const Regio
     workspace.error = whole->error;
     workspace.method = "quadrature";
     workspace.singular_throughout = true;
+    (flat ? workspace.area_lower : workspace.volume_lower) = size - whole->error;
+    (flat ? workspace.area_upper : workspace.volume_upper) = size + whole->error;
     return;
   }
   const auto inside = well_inside(region, *limits);

@@ -15,17 +15,24 @@ void set_drives(const Model& model, Posture& posture, const Eigen::VectorXd& dri
   advance(model, posture, increments);
 }
 
+/// Whether a pure machine has moved in its task coordinates only. Otherwise the way from home led
+/// through a singularity onto another motion branch.
+bool in_task_space(const Machine& machine, const Pose& pose) {
+  if (!machine.task.pure) return true;
+  Eigen::Matrix<double, 6, 1> rest = coordinates_of(pose);
+  rest.head<3>() /= machine.model.size;
+  for (const int axis : machine.task.axes) rest[axis] = 0;
+  return rest.lpNorm<Eigen::Infinity>() < 1e-6;
+}
+
 }  // namespace
 
 bool solve_forward_from(const Machine& machine, const Eigen::VectorXd& drives, Posture& posture) {
   const Model& model = machine.model;
   const std::vector<int> passive = passive_freedoms(model);
   const Eigen::VectorXd start = drive_positions(model, posture);
-  double farthest = 1e-9;
-  for (Eigen::Index d = 0; d < drives.size(); ++d) {
-    const double scale = model.freedoms[model.drives[d]].translational ? model.size : 1;
-    farthest = std::max(farthest, std::abs(drives[d] - start[d]) / scale);
-  }
+  const double farthest = std::max(1e-9, drive_distance(model, start, drives));
+  if (!(farthest < kFarthestWay)) return false;
   constexpr double kStep = 0.25, kShortest = 1e-4;
   Posture current = posture;
   double done = 0, step = std::min(1.0, kStep / farthest);
@@ -52,8 +59,8 @@ std::optional<ForwardSolution> follow_from_home(const Machine& machine,
   ForwardSolution own;
   own.home_mode = true;
   own.pose = platform_pose(model, posture.bodies[model.mechanism.platform]);
-  const Eigen::VectorXd residual = closure_residual(model, posture);
-  own.residual = residual.size() > 0 ? residual.cwiseAbs().maxCoeff() : 0;
+  if (!in_task_space(machine, own.pose)) return std::nullopt;
+  own.residual = closure_residual(model, posture).lpNorm<Eigen::Infinity>();
   own.posture = std::move(posture);
   return own;
 }
@@ -64,6 +71,7 @@ std::vector<ForwardSolution> solve_forward(const Machine& machine, const Eigen::
   search.seed = seed;
   search.regions = false;
   if (all) return find_assembly_modes(machine, drives, search).solutions;
+  if (!(drive_distance(machine.model, 0 * drives, drives) < kFarthestWay)) return {};
   if (auto own = follow_from_home(machine, drives)) return {std::move(*own)};
   // Where the drives cannot be followed from home, the closed form still knows.
   std::vector<ForwardSolution> solutions = three_sphere_modes(machine, drives);

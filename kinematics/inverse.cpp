@@ -70,6 +70,11 @@ InverseResult no_solution(const Machine& machine, const std::string& limit) {
   return result;
 }
 
+/// The budget of a way is spent before it begins.
+std::string too_far() {
+  return fmt::format("reach: not looked for beyond {:.0f} times the machine's size", kFarthestWay);
+}
+
 /// The asked coordinate that a pure machine cannot command, or "".
 std::string not_commanded(const Machine& machine, const Coordinates& asked) {
   Coordinates rest = asked;
@@ -77,7 +82,7 @@ std::string not_commanded(const Machine& machine, const Coordinates& asked) {
   for (int i = 0; i < 6; ++i)
     if (std::abs(rest[i]) > 1e-9)
       return fmt::format("motion {} is not free on this machine (task axes {})", "XYZABC"[i],
-                         axes_name(machine.task.axes));
+                         machine.task.axes.empty() ? "none" : axes_name(machine.task.axes));
   return "";
 }
 
@@ -106,7 +111,9 @@ InverseResult solve_inverse_general(const Machine& machine, const Pose& pose, Po
   // Continuation in steps short enough to stay on the assembly mode.
   const std::vector<int> active = all_freedoms(model);
   constexpr double kStep = 0.25, kShortest = 1e-4;
-  double done = 0, step = std::min(1.0, kStep / std::max(scaled.cwiseAbs().maxCoeff(), 1e-9));
+  const double way = scaled.cwiseAbs().maxCoeff();
+  if (!(way < kFarthestWay)) return no_solution(machine, too_far());
+  double done = 0, step = std::min(1.0, kStep / std::max(way, 1e-9));
   double residual = 0;
   bool arrived = false;
   while (!arrived) {
@@ -134,7 +141,7 @@ InverseResult solve_inverse_general(const Machine& machine, const Pose& pose, Po
 
 InverseResult solve_inverse(const Machine& machine, const Pose& pose,
                             const std::vector<std::string>& ignored) {
-  if (machine.task.pure) {
+  if (machine.task.pure || machine.task.axes.empty()) {
     const std::string stray = not_commanded(machine, coordinates_of(pose));
     if (!stray.empty()) return no_solution(machine, stray);
     if (machine.legs) return solve_closed_form(machine, pose, ignored);

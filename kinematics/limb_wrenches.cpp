@@ -1,5 +1,8 @@
 #include "kinematics/limb_wrenches.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -124,17 +127,6 @@ Mechanism part(const Mechanism& whole, const std::vector<int>& joints, int from,
   return limb;
 }
 
-/// What the joints' names have in common before a dot.
-std::string common_name(const Mechanism& limb) {
-  const std::string& first = limb.joints.front().name;
-  const std::size_t dot = first.rfind('.');
-  if (dot == std::string::npos) return first;
-  const std::string stem = first.substr(0, dot + 1);
-  const bool shared = std::ranges::all_of(
-      limb.joints, [&](const Joint& joint) { return joint.name.starts_with(stem); });
-  return shared ? stem.substr(0, dot) : first;
-}
-
 /// Wrenches reciprocal to twists [w; v/size] of the tool point, as [f; n/size] about it.
 Eigen::MatrixXd reciprocal(const Eigen::MatrixXd& twists) {
   Eigen::MatrixXd swapped(twists.cols(), 6);
@@ -156,8 +148,8 @@ Screw without_pitch(Screw wrench, const std::vector<Screw>& constraints) {
 
 LimbWrenches wrenches_of(const Mechanism& limb) {
   LimbWrenches wrenches;
-  wrenches.name = common_name(limb);
   for (const Joint& joint : limb.joints) wrenches.joints.push_back(joint.name);
+  wrenches.name = limb_names(wrenches.joints);
   const Model model = compile(limb);
   const Freedoms free = freedoms_at(model, home(model));
   const Eigen::MatrixXd always = reciprocal(free.platform);
@@ -175,6 +167,15 @@ LimbWrenches wrenches_of(const Mechanism& limb) {
 }
 
 }  // namespace
+
+std::string limb_names(const std::vector<std::string>& joints) {
+  std::vector<std::string> names;
+  for (const std::string& joint : joints) {
+    const std::string limb = joint.substr(0, joint.rfind('.'));
+    if (std::ranges::find(names, limb) == names.end()) names.push_back(limb);
+  }
+  return fmt::format("{}", fmt::join(names, "–"));
+}
 
 std::vector<LimbWrenches> limb_wrenches(const Mechanism& mechanism) {
   std::vector<LimbWrenches> result;

@@ -11,19 +11,6 @@ namespace {
 
 constexpr double kSlack = 1e-9;  // [m, rad] a posture on its limit is allowed
 
-std::string broken_range(const Model& model, const Posture& posture, int j) {
-  const Joint& joint = model.mechanism.joints[j];
-  for (std::size_t i = 0; i < joint.range.size(); ++i) {
-    const double q = posture.q[model.first_freedom[j] + static_cast<int>(i)];
-    const bool driven =
-        std::count(joint.driven.begin(), joint.driven.end(), static_cast<int>(i)) > 0;
-    const std::string name = (driven ? "stroke " : "range ") + joint.name;
-    if (q < joint.range[i].min - kSlack) return name + " min";
-    if (q > joint.range[i].max + kSlack) return name + " max";
-  }
-  return "";
-}
-
 bool cone_broken(const Joint& joint, const Posture& posture) {
   if (!joint.cone) return false;
   // The axis is carried by both bodies; the angle between its two images is the deflection.
@@ -57,6 +44,19 @@ std::vector<std::string> late_limit_names(const Mechanism& mechanism,
     if (!is_ignored(limit.name, ignored)) add(limit.name);
   for (const WatchedPair& pair : watched_pairs(mechanism, ignored)) add(pair.name);
   return names;
+}
+
+std::string broken_range(const Model& model, const Posture& posture, int j) {
+  const Joint& joint = model.mechanism.joints[j];
+  for (std::size_t i = 0; i < joint.range.size(); ++i) {
+    const double q = posture.q[model.first_freedom[j] + static_cast<int>(i)];
+    const bool driven =
+        std::count(joint.driven.begin(), joint.driven.end(), static_cast<int>(i)) > 0;
+    const std::string name = (driven ? "stroke " : "range ") + joint.name;
+    if (q < joint.range[i].min - kSlack) return name + " min";
+    if (q > joint.range[i].max + kSlack) return name + " max";
+  }
+  return "";
 }
 
 std::string broken_limit(const Model& model, const Posture& posture,

@@ -100,7 +100,7 @@ Projection pull_back(const Model& model, Posture& posture, const std::vector<int
   for (;; ++result.iterations) {
     Demand demand =
         goal ? loops_and(goal, model, posture) : Demand{closure_residual(model, posture), {}};
-    result.residual = demand.residual.cwiseAbs().maxCoeff();
+    result.residual = demand.residual.lpNorm<Eigen::Infinity>();  // 0 when nothing is asked
     if (result.residual < kClosed || result.iterations == kMostIterations ||
         !(result.residual < 1e3))
       break;
@@ -126,6 +126,15 @@ Projection pull_back(const Model& model, Posture& posture, const std::vector<int
 }
 
 }  // namespace
+
+double drive_distance(const Model& model, const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
+  double farthest = 0;
+  for (Eigen::Index d = 0; d < to.size(); ++d) {
+    const double scale = model.freedoms[model.drives[d]].translational ? model.size : 1;
+    farthest = std::max(farthest, std::abs(to[d] - from[d]) / scale);
+  }
+  return farthest;
+}
 
 std::vector<int> all_freedoms(const Model& model) {
   std::vector<int> active(model.freedoms.size());

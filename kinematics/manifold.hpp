@@ -7,6 +7,15 @@
 
 namespace polyglide {
 
+/// [sizes of the machine, or rad] No posture is sought farther than this: the steps to it have an
+/// end.
+constexpr double kFarthestWay = 1e4;
+
+/// How far drives are from other positions: the most moved one counts [sizes of the machine, or
+/// rad].
+[[nodiscard]] double drive_distance(const Model& model, const Eigen::VectorXd& from,
+                                    const Eigen::VectorXd& to);
+
 /// Freedoms that may move: all of them, or all but the drives.
 [[nodiscard]] std::vector<int> all_freedoms(const Model& model);
 [[nodiscard]] std::vector<int> passive_freedoms(const Model& model);

@@ -263,16 +263,17 @@ void Analysis::decide() {
                     report_.drives, report_.finite - report_.locked_mobility, report_.surplus));
   } else {
     report_.verdict = Verdict::determinate;
-    reasons.push_back(
-        fmt::format("The {} drives hold the platform's {} freedom(s) ({}) at home and at generic "
-                    "postures.",
-                    report_.drives, report_.platform_dof, report_.axes));
+    reasons.push_back(fmt::format(
+        "The {} the platform's {} freedom(s) ({}) at home and at generic postures.",
+        report_.drives == 1 ? "drive holds" : fmt::format("{} drives hold", report_.drives),
+        report_.platform_dof, report_.axes));
   }
   if (report_.redundant_constraints > 0)
     reasons.push_back(
-        fmt::format("{} constraint(s) are redundant: the machine moves only as far as its axes are "
+        fmt::format("{} constraint(s) are redundant: the machine {} only as far as its axes are "
                     "exactly parallel or intersecting as drawn.",
-                    report_.redundant_constraints));
+                    report_.redundant_constraints,
+                    report_.verdict == Verdict::rigid ? "can be assembled" : "moves"));
   if (std::max(report_.noise, report_.residual) > kDrawnNoise)
     reasons.push_back(
         fmt::format("The drawing holds to about {:.0e} of the machine's size: what agrees to that "

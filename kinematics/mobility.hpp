@@ -35,7 +35,8 @@ struct FreedomMode {
 /// A motion of the platform at home.
 struct PlatformMotion {
   std::string about;
-  Screw twist = Screw::Zero();  ///< [w; v at base origin]
+  Screw twist = Screw::Zero();     ///< [w; v at base origin]
+  std::vector<BodyMotion> bodies;  ///< those that move, fastest first, idle freedoms at rest
 };
 
 /// A freedom that moves no point of the platform.
@@ -71,9 +72,9 @@ struct CountingTerms {
 /// How sure a check is and how hard it tries.
 struct MobilityOptions {
   std::uint64_t seed = 1;
-  int walks = 3;         ///< generic postures on every motion branch
-  int steps = 3;         ///< steps of 0.25 rad (of the fastest joint) to each
-  int leaps = 8;         ///< tries per component of directions at homes singular beyond second order
+  int walks = 3;  ///< generic postures on every motion branch
+  int steps = 3;  ///< steps of 0.25 rad (of the fastest joint) to each
+  int leaps = 8;  ///< tries per component of directions at homes singular beyond second order
   bool evidence = true;  ///< also gather evidence; off for screening
 };
 

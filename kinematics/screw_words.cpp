@@ -25,20 +25,15 @@ struct ScrewWords {
 };
 
 std::string describe(const Screw& screw, const ScrewWords& words) {
-  const Vector3 axis_part = screw.head<3>(), moment = screw.tail<3>();
-  const double strength = axis_part.norm();
-  if (strength < 1e-9 * (1 + moment.norm())) {
-    if (moment.norm() < 1e-12) return words.none;
-    return fmt::format("{} {}", words.moment, vector_text(upright(moment.normalized()), 1));
-  }
-  const Vector3 axis = axis_part / strength;
-  const Vector3 point = axis_part.cross(moment) / (strength * strength);
-  const double pitch = axis.dot(moment) / strength;
+  const ScrewLine line = line_of(screw);
+  if (line.kind == ScrewLine::Kind::none) return words.none;
+  if (line.kind == ScrewLine::Kind::pure_moment)
+    return fmt::format("{} {}", words.moment, vector_text(line.axis, 1));
   const std::string where =
-      fmt::format("{} through {} mm", vector_text(upright(axis), 1), vector_text(point, 1e3));
-  if (std::abs(pitch) < 1e-6 * (1 + point.norm())) return fmt::format("{} {}", words.line, where);
-  return fmt::format("{} of pitch {:.3g} mm/rad about the axis along {}", words.screw, pitch * 1e3,
-                     where);
+      fmt::format("{} through {} mm", vector_text(line.axis, 1), vector_text(line.point, 1e3));
+  if (line.kind == ScrewLine::Kind::line) return fmt::format("{} {}", words.line, where);
+  return fmt::format("{} of pitch {:.3g} mm/rad about the axis along {}", words.screw,
+                     line.pitch * 1e3, where);
 }
 
 /// Orthonormal basis of the column space, base axes first where they lie in it.
@@ -60,6 +55,21 @@ Eigen::Matrix3Xd plain_directions(const Eigen::MatrixXd& span, int rank) {
 }
 
 }  // namespace
+
+ScrewLine line_of(const Screw& screw) {
+  const Vector3 axis_part = screw.head<3>(), moment = screw.tail<3>();
+  const double strength = axis_part.norm();
+  if (strength < 1e-9 * (1 + moment.norm())) {
+    if (moment.norm() < 1e-12) return {};
+    return {ScrewLine::Kind::pure_moment, upright(moment.normalized())};
+  }
+  const Vector3 axis = axis_part / strength;
+  const Vector3 point = axis_part.cross(moment) / (strength * strength);
+  const double pitch = axis.dot(moment) / strength;
+  if (std::abs(pitch) < 1e-6 * (1 + point.norm()))
+    return {ScrewLine::Kind::line, upright(axis), point};
+  return {ScrewLine::Kind::screw, upright(axis), point, pitch};
+}
 
 std::string describe_twist(const Screw& twist) {
   return describe(

@@ -7,6 +7,20 @@
 
 namespace polyglide {
 
+/// What a screw is as a line in space.
+struct ScrewLine {
+  /// The zero screw; one without axis part (translation, couple); one of no pitch (rotation,
+  /// force); any other.
+  enum class Kind { none, pure_moment, line, screw };
+  Kind kind = Kind::none;
+  Vector3 axis = Vector3::Zero();   ///< unit, its largest part positive
+  Vector3 point = Vector3::Zero();  ///< of the line, nearest to the base origin [m]
+  double pitch = 0;                 ///< [m/rad]
+};
+
+/// Axis, point and pitch of [axis part; moment about the base origin].
+[[nodiscard]] ScrewLine line_of(const Screw& screw);
+
 /// A twist [w; v at the base origin] in words: "rotation about the axis along (…) through (…) mm",
 /// "translation along (…)", "screw motion of pitch …". The zero twist is "no motion".
 [[nodiscard]] std::string describe_twist(const Screw& twist);

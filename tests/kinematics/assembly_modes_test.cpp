@@ -13,9 +13,7 @@ namespace {
 using namespace polyglide::fixtures;
 using nlohmann::json;
 
-json cases() {
-  return read_json(std::string(POLYGLIDE_SOURCE_DIR) + "/tests/truth/forward_kinematics.json");
-}
+json cases() { return read_json(POLYGLIDE_SOURCE_DIR "/tests/truth/forward_kinematics.json"); }
 
 Vector3 vector_of(const json& v) {
   return {v.at(0).get<double>(), v.at(1).get<double>(), v.size() > 2 ? v.at(2).get<double>() : 0};

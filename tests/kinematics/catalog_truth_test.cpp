@@ -15,7 +15,7 @@ using namespace polyglide::fixtures;
 
 const nlohmann::json& published() {
   static const nlohmann::json kRecords =
-      read_json(std::string(POLYGLIDE_SOURCE_DIR) + "/tests/truth/catalog.json");
+      read_json(POLYGLIDE_SOURCE_DIR "/tests/truth/catalog.json");
   return kRecords;
 }
 
@@ -29,7 +29,9 @@ TEST_P(CatalogOfRecord, MovesAsPublished) {
   EXPECT_EQ(found["platform"]["dof"], expected.at("dof"));
   EXPECT_EQ(found["drives"]["count"], expected.at("drives"));
   const auto agrees = [&](const char* key, const nlohmann::json& value) {
-    if (expected.contains(key)) EXPECT_EQ(value, expected[key]) << key << " " << found["reasons"];
+    if (expected.contains(key)) {
+      EXPECT_EQ(value, expected[key]) << key << " " << found["reasons"];
+    }
   };
   agrees("translations", found["platform"]["translations"]);
   agrees("rotations", found["platform"]["rotations"]);

@@ -143,6 +143,61 @@ TEST(RedundantConstraints, AreInnerWrenchesThatNoFreedomFeels) {
   }
 }
 
+TEST(PlatformMotions, TakeBodiesAlongAndLeaveIdleOnesAtRest) {
+  for (const std::string& name : catalog_names()) {
+    const Model model = compile(expand(find_layout(name)));
+    const MobilityReport report = analyse_mobility(model);
+    EXPECT_EQ(static_cast<int>(report.platform_motions.size()), report.platform_home_dof) << name;
+    for (const PlatformMotion& motion : report.platform_motions) {
+      const auto platform =
+          std::ranges::find(motion.bodies, model.mechanism.platform, &BodyMotion::body);
+      ASSERT_NE(platform, motion.bodies.end()) << name << " " << motion.about;
+      EXPECT_LT((platform->twist - motion.twist).norm(), 1e-9 * (1 + motion.twist.norm())) << name;
+      EXPECT_NEAR(motion.bodies.front().speed, 1, 1e-9) << name;
+    }
+  }
+}
+
+/// A hexapod of telescopes between balls: every leg can spin about itself.
+Mechanism hexapod_of_balls() {
+  Mechanism mechanism = expand(find_layout("hexapod-6ups"));
+  for (Joint& joint : mechanism.joints)
+    if (joint.type == JointType::universal) {
+      joint.type = JointType::spherical;
+      joint.range.clear();
+    }
+  return mechanism;
+}
+
+TEST(IdleFreedoms, OfAHexapodOfBallsAreItsSixLegsAboutThemselves) {
+  const Mechanism mechanism = hexapod_of_balls();
+  const MobilityReport report = check(mechanism);
+  EXPECT_EQ(report.platform_dof, 6);
+  ASSERT_EQ(report.idle_freedoms.size(), 6u);
+  for (const IdleFreedom& idle : report.idle_freedoms) {
+    ASSERT_EQ(idle.bodies.size(), 2u) << idle.about;  // the halves of one telescope
+    const ScrewLine line = line_of(idle.twist);
+    EXPECT_EQ(line.kind, ScrewLine::Kind::line);
+    for (const Joint& joint : mechanism.joints) {
+      if (joint.type != JointType::spherical) continue;
+      const auto ends = {mechanism.bodies[joint.bodies[0]], mechanism.bodies[joint.bodies[1]]};
+      const bool mine = std::ranges::any_of(
+          ends, [&](const std::string& body) { return std::ranges::count(idle.bodies, body) > 0; });
+      if (mine) {
+        EXPECT_LT((joint.at - line.point).cross(line.axis).norm(), 1e-9) << idle.about;
+      }
+    }
+  }
+}
+
+TEST(LimbWrenches, OfLegsThatMeetBeforeThePlatformAreNamedAfterAllOfThem) {
+  const auto limbs = check("h4").limbs;
+  ASSERT_EQ(limbs.size(), 2u);
+  EXPECT_EQ(limbs[0].name, "leg1–leg2–hinge1");
+  EXPECT_EQ(limb_names({"a.x", "a.y"}), "a");
+  EXPECT_EQ(limb_names({}), "");
+}
+
 TEST(IdleFreedoms, NameTheRodAndItsAxis) {
   nlohmann::json document = find_layout("table1-6").document;
   document["limbs"][1]["rods"]["carriage"]["joint"] = "spherical";
@@ -200,6 +255,17 @@ TEST(ScrewWords, NameForceCoupleAndWrench) {
   wrench << 0, 0, 0, 0, 0, 1;
   EXPECT_EQ(describe_wrench(wrench), "couple about (0, 0, 1)");
   EXPECT_EQ(describe_wrench(Screw::Zero()), "no wrench");
+}
+
+TEST(ScrewWords, GiveAxisPointAndPitch) {
+  Screw screw;  // 5 mm a radian about the line along -z through x = 0.1, twice as fast
+  screw << 0, 0, -2, 0, 0.2, -0.01;
+  const ScrewLine line = line_of(screw);
+  EXPECT_EQ(line.kind, ScrewLine::Kind::screw);
+  EXPECT_EQ(line.axis, Vector3::UnitZ());
+  EXPECT_TRUE(line.point.isApprox(Vector3(0.1, 0, 0)));
+  EXPECT_NEAR(line.pitch, 0.005, 1e-15);
+  EXPECT_EQ(line_of(Screw::Zero()).kind, ScrewLine::Kind::none);
 }
 
 TEST(PlainBasis, FindsTranslationsAlongBaseAxesAndPureRotations) {

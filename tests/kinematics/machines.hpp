@@ -142,8 +142,7 @@ inline Machine catalog_machine(const std::string& name) {
 }
 
 inline nlohmann::json truth() {
-  return read_json(std::string(POLYGLIDE_SOURCE_DIR) +
-                   "/tests/truth/workspace_conditioning_stiffness.json");
+  return read_json(POLYGLIDE_SOURCE_DIR "/tests/truth/workspace_conditioning_stiffness.json");
 }
 
 /// Repeatable uniform numbers in [-1, 1).

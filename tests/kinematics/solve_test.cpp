@@ -231,16 +231,18 @@ TEST(PlanarMachine, GeneralSolverReproducesFormula4) {
     const Vector3 k(x_b[i], formula4(i, Vector3::Zero(), 0), 0);
     const Vector3 f(arm[i] * std::cos(beta[i]) + tool * std::cos(a_home),
                     arm[i] * std::sin(beta[i]) + tool * std::sin(a_home), 0);
-    Joint slide{.name = "slide",
-                .type = JointType::prismatic,
-                .bodies = {0, carriage},
-                .at = k,
-                .axes = {Vector3::UnitY(), Vector3::UnitX()},
-                .driven = {0}};
-    Joint top{
-        .name = "top", .type = JointType::revolute, .bodies = {carriage, carriage + 1}, .at = k};
-    Joint bottom{
-        .name = "bottom", .type = JointType::revolute, .bodies = {carriage + 1, 1}, .at = f};
+    Joint slide, top, bottom;
+    slide.name = "slide";
+    slide.type = JointType::prismatic;
+    slide.bodies = {0, carriage};
+    slide.at = top.at = k;
+    slide.axes = {Vector3::UnitY(), Vector3::UnitX()};
+    slide.driven = {0};
+    top.name = "top";
+    top.bodies = {carriage, carriage + 1};
+    bottom.name = "bottom";
+    bottom.bodies = {carriage + 1, 1};
+    bottom.at = f;
     mechanism.joints.insert(mechanism.joints.end(), {slide, top, bottom});
   }
   const Machine dut = prepare(mechanism);

@@ -40,16 +40,16 @@ TEST(Stability, SchemesThatWeighAlikeAreListedOnce) {
 }
 
 TEST(Stability, RanksChangeWithTheWeights) {
-  const auto json = stability_json({design("wide", 0.5, 0.3), design("firm", 0.1, 0.9)}, kBoth);
-  const auto& schemes = json["schemes"];
+  const auto document = stability_json({design("wide", 0.5, 0.3), design("firm", 0.1, 0.9)}, kBoth);
+  const auto& schemes = document["schemes"];
   for (std::size_t s = 0; s < schemes.size(); ++s) {
     const std::string label = schemes[s]["label"];
     if (label.starts_with("Mean conditioning")) {
-      EXPECT_EQ(json["ranks"]["firm"][s], 1);
-      EXPECT_EQ(json["ranks"]["wide"][s], 2);
+      EXPECT_EQ(document["ranks"]["firm"][s], 1);
+      EXPECT_EQ(document["ranks"]["wide"][s], 2);
     }
   }
-  EXPECT_NE(json["statement"].get<std::string>().find("firm is first with"), std::string::npos);
+  EXPECT_NE(document["statement"].get<std::string>().find("firm is first with"), std::string::npos);
 }
 
 TEST(Stability, FewerThanTwoLayoutsHaveNoOrder) {

@@ -132,13 +132,15 @@ export class SchemePanel {
     return el("div", { class: "mode" }, el("h4", {}, "The freedom that is left"), el("p", {}, mode.about), mode.frames.length > 1 && this.button);
   }
 
+  /** To one end of the motion, to the other and back, from the middle on, where home is. */
   play() {
     const { frames } = this.entry.scene.mode;
-    let step = 0;
+    const last = frames.length - 1;
+    let step = Math.round(last / 2);
     this.button.textContent = "❚❚ Stop";
     this.timer = setInterval(() => {
-      this.apply(frames[step % frames.length]);
-      step += 1;
+      step = (step + 1) % (2 * last);
+      this.apply(frames[step <= last ? step : 2 * last - step]);
     }, FRAME_MS);
   }
 
