@@ -8,6 +8,7 @@
 #include "cases.hpp"
 #include "catalog/json_file.hpp"
 #include "kinematics/manifold.hpp"
+#include "kinematics/motion.hpp"
 #include "machines.hpp"
 
 namespace polyglide {
