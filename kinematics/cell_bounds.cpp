@@ -40,7 +40,7 @@ class CellJudge::Tally {
 
   /// A limit that crosses.
   void take(const PlaneCut& cut) {
-    outside_ += 1.0 - Interval(cut.part.lower());
+    cuts_.push_back(cut);
     cell_.upper = std::min(cell_.upper, cut.part.upper());
     const auto holds = [&](const Vector3& place) { return allows(cut.plane, cuboid_, place); };
     for (int mark = 0; mark < kMarks; ++mark)
@@ -51,14 +51,15 @@ class CellJudge::Tally {
 
   /// A limit that may leave nothing.
   void give_up() {
-    outside_ = Interval(1.0);
+    lost_ = true;
     cell_.marks = 0;
     if (extra_) extra_->reset();
   }
 
   void close() {
     cell_.inside = cell_.regular && cell_.quadrics.none() && cell_.rest.none();
-    cell_.lower = cell_.inside ? 1 : std::max(0.0, (1.0 - outside_).lower());
+    const double taken = lost_ ? 1 : cuts_.empty() ? 0 : part_taken(cuboid_, std::move(cuts_));
+    cell_.lower = cell_.inside ? 1 : std::max(0.0, (1.0 - Interval(taken)).lower());
     if (cell_.lower > 0) return;
     cell_.marks = 0;
     if (extra_) extra_->reset();
@@ -68,7 +69,8 @@ class CellJudge::Tally {
   Cuboid cuboid_;
   CellBounds& cell_;
   std::optional<Vector3>* extra_;
-  Interval outside_{0.0};
+  std::vector<PlaneCut> cuts_;
+  bool lost_ = false;
 };
 
 CellJudge::CellJudge(const LegBounds& limits, int side)

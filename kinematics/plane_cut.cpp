@@ -1,6 +1,7 @@
 #include "kinematics/plane_cut.hpp"
 
 #include <bit>
+#include <cmath>
 
 namespace polyglide {
 namespace {
@@ -56,6 +57,24 @@ Interval part_below(const std::array<double, 3>& n, Interval height) {
   return {low, high};
 }
 
+/// What a plane must be moved by so that what it allows then is allowed by the other, too; infinite
+/// where they face apart.
+double step_within(const Cuboid& cuboid, const PlaneBound& plane, const PlaneBound& other) {
+  double common = 0, own = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double square = cuboid.half[k] * cuboid.half[k];
+    common += plane.slope[k] * other.slope[k] * square;
+    own += plane.slope[k] * plane.slope[k] * square;
+  }
+  const double ratio = common / own;
+  if (!(ratio > 0 && std::isfinite(ratio))) return std::numeric_limits<double>::infinity();
+  // other - ratio·plane at its most.
+  Interval most = Interval(other.at.upper()) - Interval(ratio) * plane.at.upper();
+  for (int k = 0; k < 3; ++k)
+    most += Interval(magnitude(other.slope[k] - Interval(ratio) * plane.slope[k])) * cuboid.half[k];
+  return std::max(0.0, (most / ratio).upper());
+}
+
 }  // namespace
 
 PlaneCut cut(const Cuboid& cuboid, const PlaneBound& plane) {
@@ -74,6 +93,31 @@ PlaneCut cut(const Cuboid& cuboid, const PlaneBound& plane) {
   // A cut by a hair is a cut: neither nothing nor all.
   constexpr double kHair = 0x1p-53;
   return {Interval(std::min(part.lower(), 1 - kHair), std::max(part.upper(), kHair)), plane};
+}
+
+double part_taken(const Cuboid& cuboid, std::vector<PlaneCut> cuts) {
+  const auto taken = [](const PlaneCut& each) { return 1.0 - Interval(each.part.lower()); };
+  std::ranges::sort(cuts, {}, [](const PlaneCut& each) { return each.part.lower(); });
+  std::size_t kept = 0;
+  for (const PlaneCut& next : cuts) {
+    bool within = false;
+    for (std::size_t i = 0; i < kept && !within; ++i) {
+      const double step = step_within(cuboid, cuts[i].plane, next.plane);
+      if (!std::isfinite(step)) continue;
+      PlaneCut both = cuts[i];
+      if (step > 0) {
+        PlaneBound moved = both.plane;
+        moved.at += step;
+        both = cut(cuboid, moved);
+      }
+      within = taken(both).upper() <= (taken(cuts[i]) + taken(next)).upper();
+      if (within) cuts[i] = both;
+    }
+    if (!within) cuts[kept++] = next;
+  }
+  Interval sum(0.0);
+  for (std::size_t i = 0; i < kept; ++i) sum += taken(cuts[i]);
+  return std::min(1.0, sum.upper());
 }
 
 bool allows(const PlaneBound& plane, const Cuboid& cuboid, const Eigen::Vector3d& place) {

@@ -30,6 +30,10 @@ struct PlaneCut {
 
 [[nodiscard]] PlaneCut cut(const Cuboid& cuboid, const PlaneBound& plane);
 
+/// Upper bound of the part of the cuboid that some of the cuts does not allow. Planes that are
+/// nearly parallel are taken together, else what both take away counts twice.
+[[nodiscard]] double part_taken(const Cuboid& cuboid, std::vector<PlaneCut> cuts);
+
 /// Whether a place, as parts -1 to 1 of the half sides, is proved to be allowed.
 [[nodiscard]] bool allows(const PlaneBound& plane, const Cuboid& cuboid,
                           const Eigen::Vector3d& place);
