@@ -87,7 +87,7 @@ bool CellJudge::judge(const PoseBox& box, CellBounds& cell, std::optional<Vector
   Tally tally(cuboid_of(box), cell, extra);
   for (std::size_t i = 0; i < quadrics_.size(); ++i) {
     if (!cell.quadrics[i]) continue;
-    const PlaneCut left = cut(tally.cuboid(), quadrics_[i]);
+    const PlaneCut left = cut_of(tally.cuboid(), quadrics_[i]);
     if (left.fails()) return false;
     if (left.holds())
       cell.quadrics.reset(i);
@@ -118,7 +118,7 @@ bool CellJudge::judge_rest(const PoseBox& box, CellBounds& cell, Tally& tally) c
       tally.give_up();
       continue;
     }
-    const PlaneCut left = cut(tally.cuboid(), *plane);
+    const PlaneCut left = cut_of(tally.cuboid(), *plane);
     if (left.fails()) return false;
     if (left.holds())
       cell.rest.reset(i);
@@ -144,7 +144,7 @@ bool CellJudge::judge_regularity(const PoseBox& box, CellBounds& cell, Tally& ta
     tally.give_up();
     return true;
   }
-  const PlaneCut left = cut(tally.cuboid(), *face);
+  const PlaneCut left = cut_of(tally.cuboid(), *face);
   if (left.fails()) return false;
   cell.regular = left.holds();
   if (!cell.regular) tally.take(left);

@@ -5,18 +5,20 @@
 namespace polyglide {
 namespace {
 
-std::uint64_t key(int level, const CellPlace& at) {
+std::uint64_t place_key(int level, const CellPlace& at) {
   std::uint64_t result = static_cast<std::uint64_t>(level);
   for (int k = 0; k < 3; ++k) result = result << 19 | static_cast<std::uint64_t>(at[k]);
   return result;
 }
 
-int root(std::vector<int>& group, int i) {
+int first_of(std::vector<int>& group, int i) {
   while (group[i] != i) i = group[i] = group[group[i]];
   return i;
 }
 
-void join(std::vector<int>& group, int a, int b) { group[root(group, a)] = root(group, b); }
+void unite(std::vector<int>& group, int a, int b) {
+  group[first_of(group, a)] = first_of(group, b);
+}
 
 }  // namespace
 
@@ -51,7 +53,7 @@ OctreeParts::OctreeParts(const OctreeBox& box, const CellJudge& judge,
     : box_(box), judge_(judge), cells_(cells), sure_(cells.size()), maybe_(cells.size()) {
   places_.reserve(2 * cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    places_.emplace(key(cells[i].level, cells[i].at), static_cast<int>(i));
+    places_.emplace(place_key(cells[i].level, cells[i].at), static_cast<int>(i));
     lowest_ = std::min(lowest_, cells[i].level);
     if (box_.holds_home(cells[i]) && (home_ < 0 || cells[i].known.inside))
       home_ = static_cast<int>(i);
@@ -69,10 +71,12 @@ OctreeParts::OctreeParts(const OctreeBox& box, const CellJudge& judge,
 }
 
 bool OctreeParts::surely_with_home(int cell) {
-  return cells_[home_].known.inside && root(sure_, cell) == root(sure_, home_);
+  return cells_[home_].known.inside && first_of(sure_, cell) == first_of(sure_, home_);
 }
 
-bool OctreeParts::perhaps_with_home(int cell) { return root(maybe_, cell) == root(maybe_, home_); }
+bool OctreeParts::perhaps_with_home(int cell) {
+  return first_of(maybe_, cell) == first_of(maybe_, home_);
+}
 
 /// Calls visit(neighbour) for the cell of equal or lower level across, if any is left.
 template <typename Visit>
@@ -84,7 +88,7 @@ void OctreeParts::neighbour(const OctreeCell& cell, const CellPlace& way,
     if (at[k] < 0 || at[k] >= 1 << cell.level) return;
   }
   for (int level = cell.level; level >= lowest_; --level) {
-    const auto found = places_.find(key(level, at));
+    const auto found = places_.find(place_key(level, at));
     if (found != places_.end()) {
       visit(found->second);
       return;
@@ -101,9 +105,10 @@ void OctreeParts::join_over_faces() {
         CellPlace step{};
         step[axis] = way;
         neighbour(cells_[i], step, [&](int other) {
-          join(maybe_, i, other);
-          if (root(sure_, i) != root(sure_, other) && joined(cells_[i], cells_[other], axis, way))
-            join(sure_, i, other);
+          unite(maybe_, i, other);
+          if (first_of(sure_, i) != first_of(sure_, other) &&
+              joined(cells_[i], cells_[other], axis, way))
+            unite(sure_, i, other);
         });
       }
 }
@@ -115,7 +120,7 @@ void OctreeParts::join_over_edges() {
     for (int code = 0; code < 27; ++code) {
       const CellPlace step{code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1};
       if (std::abs(step[0]) + std::abs(step[1]) + std::abs(step[2]) < 2) continue;
-      neighbour(cells_[i], step, [&](int other) { join(maybe_, i, other); });
+      neighbour(cells_[i], step, [&](int other) { unite(maybe_, i, other); });
     }
 }
 

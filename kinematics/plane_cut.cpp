@@ -6,6 +6,10 @@
 namespace polyglide {
 namespace {
 
+/// How far rounding may move the middle and the sides of a box, as part of its half sides: for
+/// coordinates up to 2^20 half sides. A cut by less than that is neither nothing nor all.
+constexpr double kHair = 0x1p-30;
+
 /// The normal of a plane before the unit cube, without the components that are nothing.
 struct Normal {
   std::array<double, 3> along{};
@@ -77,7 +81,7 @@ double step_within(const Cuboid& cuboid, const PlaneBound& plane, const PlaneBou
 
 }  // namespace
 
-PlaneCut cut(const Cuboid& cuboid, const PlaneBound& plane) {
+PlaneCut cut_of(const Cuboid& cuboid, const PlaneBound& plane) {
   // at + Σ slope·half·ξ <= 0, ξ in [-1, 1], as n·x <= height on the unit cube.
   std::array<double, 3> n;
   Interval swing(0.0), rounding(0.0);
@@ -90,9 +94,9 @@ PlaneCut cut(const Cuboid& cuboid, const PlaneBound& plane) {
   if ((plane.at + swing).upper() <= 0) return {Interval(1.0), plane};
   if ((plane.at - swing).lower() > 0) return {Interval(0.0), plane};
   const Interval part = part_below(n, swing - plane.at + 2.0 * rounding);
-  // A cut by a hair is a cut: neither nothing nor all.
-  constexpr double kHair = 0x1p-53;
-  return {Interval(std::min(part.lower(), 1 - kHair), std::max(part.upper(), kHair)), plane};
+  return {Interval(std::clamp(part.lower() - kHair, 0.0, 1 - kHair),
+                   std::clamp(part.upper() + kHair, kHair, 1.0)),
+          plane};
 }
 
 double part_taken(const Cuboid& cuboid, std::vector<PlaneCut> cuts) {
@@ -108,7 +112,7 @@ double part_taken(const Cuboid& cuboid, std::vector<PlaneCut> cuts) {
       if (step > 0) {
         PlaneBound moved = both.plane;
         moved.at += step;
-        both = cut(cuboid, moved);
+        both = cut_of(cuboid, moved);
       }
       within = taken(both).upper() <= (taken(cuts[i]) + taken(next)).upper();
       if (within) cuts[i] = both;
@@ -122,7 +126,8 @@ double part_taken(const Cuboid& cuboid, std::vector<PlaneCut> cuts) {
 
 bool allows(const PlaneBound& plane, const Cuboid& cuboid, const Eigen::Vector3d& place) {
   Interval height(plane.at.upper());
-  for (int k = 0; k < 3; ++k) height += Interval(place[k]) * plane.slope[k] * cuboid.half[k];
+  for (int k = 0; k < 3; ++k)
+    height += Interval(place[k] - kHair, place[k] + kHair) * plane.slope[k] * cuboid.half[k];
   return height.upper() <= 0;
 }
 

@@ -8,7 +8,8 @@ namespace polyglide {
 
 // Boxes cut by planes; all need UpwardRounding.
 
-/// A box of places: its middle, and how far it reaches from there to either side [m].
+/// A box of places: its middle, and how far it reaches from there to either side [m]. What is said
+/// of one holds for boxes that differ from it by rounding, too.
 struct Cuboid {
   std::array<double, 3> middle{}, half{};
 };
@@ -28,7 +29,7 @@ struct PlaneCut {
   bool fails() const { return part.upper() <= 0; }
 };
 
-[[nodiscard]] PlaneCut cut(const Cuboid& cuboid, const PlaneBound& plane);
+[[nodiscard]] PlaneCut cut_of(const Cuboid& cuboid, const PlaneBound& plane);
 
 /// Upper bound of the part of the cuboid that some of the cuts does not allow. Planes that are
 /// nearly parallel are taken together, else what both take away counts twice.

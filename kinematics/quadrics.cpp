@@ -100,10 +100,10 @@ PlaneBound enclose(const Quadric& quadric, const Cuboid& cuboid) {
   return bound;
 }
 
-PlaneCut cut(const Cuboid& cuboid, const QuadricLimit& limit) {
-  const PlaneCut value = cut(cuboid, enclose(limit.value, cuboid));
+PlaneCut cut_of(const Cuboid& cuboid, const QuadricLimit& limit) {
+  const PlaneCut value = cut_of(cuboid, enclose(limit.value, cuboid));
   if (!limit.unless || value.holds()) return value;
-  const PlaneCut unless = cut(cuboid, enclose(*limit.unless, cuboid));
+  const PlaneCut unless = cut_of(cuboid, enclose(*limit.unless, cuboid));
   if (unless.fails()) return value;
   if (unless.holds() || value.fails()) return unless;
   const bool first = value.part.lower() >= unless.part.lower();

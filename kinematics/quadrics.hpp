@@ -43,7 +43,7 @@ struct QuadricLimit {
 
 /// What the limit leaves of a cuboid. Where both faces cross it, the plane is that which leaves
 /// more.
-[[nodiscard]] PlaneCut cut(const Cuboid& cuboid, const QuadricLimit& limit);
+[[nodiscard]] PlaneCut cut_of(const Cuboid& cuboid, const QuadricLimit& limit);
 
 /// Appends one, or widens one of `limits` that is the same but for rounding: counted twice, the
 /// same face would be taken away twice.

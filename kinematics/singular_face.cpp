@@ -70,7 +70,7 @@ IntervalMatrix exactly(const Eigen::MatrixXd& a) {
   return result;
 }
 
-bool is_finite(const IntervalMatrix& a) {
+bool all_finite(const IntervalMatrix& a) {
   for (int i = 0; i < a.rows(); ++i)
     for (int j = 0; j < a.cols(); ++j)
       if (!(magnitude(a(i, j)) < std::numeric_limits<double>::infinity())) return false;
@@ -84,7 +84,7 @@ std::optional<PlaneBound> singular_face(const LegBounds& limits, const PoseBox& 
   PoseBox centre = box;
   for (int k = 0; k < 3; ++k) centre[k] = Interval(cuboid.middle[k]);
   const LegBounds::MovingRows whole = limits.moving_rows(box);
-  if (!std::ranges::all_of(whole.rates, is_finite)) return std::nullopt;
+  if (!std::ranges::all_of(whole.rates, all_finite)) return std::nullopt;
   const IntervalMatrix at = limits.rod_rows(centre);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(middle(at),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);

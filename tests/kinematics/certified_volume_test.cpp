@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "kinematics/region_measure.hpp"
+#include "kinematics/workspace.hpp"
 #include "machines.hpp"
 
 namespace polyglide {
@@ -40,6 +41,35 @@ TEST(CertifiedVolume, OfDeltaOneIsKnownToAThousandth) {
   ASSERT_TRUE(wider);
   EXPECT_NEAR(wider->lower, 12.010e-3, 0.002 * 12.010e-3);
   EXPECT_GT(wider->lower, dut->upper);
+}
+
+TEST(CertifiedVolume, TakesFewCellsForAThousandth) {
+  // Gap and square of the cell shrink together: some four times the cells for a fourth of the gap.
+  for (const std::vector<std::string>& ignored :
+       {std::vector<std::string>{}, std::vector<std::string>{"triangle"}}) {
+    const auto rough = proved(catalog_machine("delta-1"), 1e-3, ignored),
+               fine = proved(catalog_machine("delta-1"), 2.5e-4, ignored);
+    ASSERT_TRUE(rough && fine);
+    EXPECT_TRUE(rough->reached && fine->reached);
+    EXPECT_LT(rough->cells, 80000);
+    EXPECT_LT(fine->cells, 6 * rough->cells);
+    EXPECT_GE(fine->lower, rough->lower * (1 - 1e-3));
+    EXPECT_LE(fine->lower, rough->upper);
+    EXPECT_GE(fine->upper, rough->lower);
+  }
+}
+
+TEST(CertifiedVolume, EnclosesWhatQuadratureFindsOnCatalogMachines) {
+  for (const char* name : {"delta-1", "tripod-70", "linear-delta", "orthoglide", "triglide"}) {
+    const Machine machine = catalog_machine(name);
+    const Workspace workspace = compute_workspace(machine);
+    const auto dut = proved(machine, 1e-3);
+    ASSERT_TRUE(dut) << name;
+    EXPECT_TRUE(dut->reached) << name;
+    EXPECT_EQ(workspace.method, "quadrature") << name;
+    EXPECT_LE(dut->lower, workspace.volume + workspace.error) << name;
+    EXPECT_GE(dut->upper, workspace.volume - workspace.error) << name;
+  }
 }
 
 TEST(CertifiedVolume, EnclosesTheClosedFormOfALinearDelta) {
