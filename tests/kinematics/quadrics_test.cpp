@@ -5,8 +5,7 @@
 #include "kinematics/evaluate.hpp"
 #include "kinematics/leg_bounds.hpp"
 #include "kinematics/singular_face.hpp"
-#include "machines.hpp"
-#include "variations.hpp"
+#include "random_machine.hpp"
 
 namespace polyglide {
 namespace {
@@ -18,7 +17,7 @@ using variations::uniform_vector;
 const Cuboid kCube{{0, 0, 0}, {1, 1, 1}};
 
 Interval part_below(const Vector3& normal, double offset) {
-  return cut_of(kCube, {Interval(-offset), {normal[0], normal[1], normal[2]}}).part;
+  return cut_of(kCube, PlaneBound{Interval(-offset), {normal[0], normal[1], normal[2]}}).part;
 }
 
 void expect_about(const Interval& part, double expected) {
@@ -39,21 +38,21 @@ TEST(PlaneCut, CutsCornersWedgesAndSlabs) {
 
 TEST(PlaneCut, NothingAndAllAreExact) {
   const UpwardRounding rounding;
-  EXPECT_TRUE(cut_of(kCube, {Interval(-3.0), {1, 1, 1}}).holds());
-  EXPECT_TRUE(cut_of(kCube, {Interval(3.5), {1, 1, 1}}).fails());
-  EXPECT_TRUE(cut_of(kCube, {Interval(0.0), {0, 0, 0}}).holds());
-  const PlaneCut hair = cut_of(kCube, {Interval(-1 + 1e-15), {1, 0, 0}});
+  EXPECT_TRUE(cut_of(kCube, PlaneBound{Interval(-3.0), {1, 1, 1}}).holds());
+  EXPECT_TRUE(cut_of(kCube, PlaneBound{Interval(3.5), {1, 1, 1}}).fails());
+  EXPECT_TRUE(cut_of(kCube, PlaneBound{Interval(0.0), {0, 0, 0}}).holds());
+  const PlaneCut hair = cut_of(kCube, PlaneBound{Interval(-1 + 1e-15), {1, 0, 0}});
   EXPECT_FALSE(hair.holds());
   EXPECT_FALSE(hair.fails());
 }
 
 TEST(PlaneCut, ParallelFacesAreTakenAwayOnce) {
   const UpwardRounding rounding;
-  const PlaneCut near = cut_of(kCube, {Interval(0.0), {1, 0.5, 0}}),
-                 far = cut_of(kCube, {Interval(-0.4), {2, 1, 0}}),
-                 across = cut_of(kCube, {Interval(-0.9), {0, 0, -1}});
-  EXPECT_NEAR(part_taken(kCube, {near, far}), 0.5, 4e-9);
-  EXPECT_NEAR(part_taken(kCube, {far, near, across}), 0.5 + 0.05, 4e-9);
+  const PlaneCut close = cut_of(kCube, PlaneBound{Interval(0.0), {1, 0.5, 0}}),
+                 further = cut_of(kCube, PlaneBound{Interval(-0.4), {2, 1, 0}}),
+                 across = cut_of(kCube, PlaneBound{Interval(-0.9), {0, 0, -1}});
+  EXPECT_NEAR(part_taken(kCube, {close, further}), 0.5, 4e-9);
+  EXPECT_NEAR(part_taken(kCube, {further, close, across}), 0.5 + 0.05, 4e-9);
   EXPECT_DOUBLE_EQ(part_taken(kCube, {}), 0);
 }
 
@@ -65,7 +64,8 @@ TEST(PlaneCut, WhatPlanesTakeIsNoLessThanWhatSamplesFind) {
     const Vector3 common = uniform_vector(random);
     for (int i = 0; i < 3; ++i) {
       const Vector3 n = common + 0.3 * uniform_vector(random);
-      const PlaneCut one = cut_of(kCube, {Interval(0.5 * uniform(random)), {n[0], n[1], n[2]}});
+      const PlaneCut one =
+          cut_of(kCube, PlaneBound{Interval(0.5 * uniform(random)), {n[0], n[1], n[2]}});
       if (!one.holds() && !one.fails()) cuts.push_back(one);
     }
     int outside = 0;
@@ -104,39 +104,6 @@ TEST(Quadrics, LieBetweenTheirPlanesOnEveryCuboid) {
       EXPECT_NEAR(plane.at.upper() - plane.at.lower(), half.squaredNorm(), 1e-12);
     }
   }
-}
-
-/// Three guides or struts anywhere about home, with strokes, cones and planes.
-Machine random_machine(std::mt19937_64& random, bool struts) {
-  Mechanism mechanism;
-  if (struts) {
-    std::vector<std::pair<Vector3, Vector3>> limbs;
-    for (int i = 0; i < 3; ++i)
-      limbs.emplace_back(uniform_vector(random) - 2 * Vector3::Unit(i),
-                         0.2 * uniform_vector(random));
-    mechanism = strutted(limbs, {-0.6, 0.7});
-  } else {
-    std::vector<Limb> limbs;
-    for (int i = 0; i < 3; ++i)
-      limbs.push_back({Vector3::Unit(i) * 1.5 + 0.5 * uniform_vector(random),
-                       (uniform_vector(random) + (i == 0 ? -1 : 1) * Vector3::Unit(i)).normalized(),
-                       0.2 * uniform_vector(random),
-                       {-0.3 - 0.2 * uniform(random), 0.5 + 0.2 * uniform(random)}});
-    mechanism = guided(limbs);
-  }
-  for (Joint& joint : mechanism.joints) {
-    if (joint.type != JointType::spherical || random() % 2 == 0) continue;
-    joint.cone = 0.9 + 0.8 * uniform(random);
-    joint.cone_axis = uniform_vector(random).normalized();
-  }
-  mechanism.limits.push_back(
-      {"plane", 1, {0.1 * uniform_vector(random)}, {{uniform_vector(random).normalized(), 0.5}}});
-  if (!struts)
-    mechanism.limits.push_back({"wall",
-                                mechanism.joints[0].bodies[1],
-                                {mechanism.joints[0].at},
-                                {{uniform_vector(random).normalized(), 3}}});
-  return prepare(mechanism, task_of({0, 1, 2}));
 }
 
 TEST(Quadrics, SayWhatTheEvaluatorSaysOfRandomMachines) {
