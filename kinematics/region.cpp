@@ -288,9 +288,10 @@ Region explore(Probe& probe, int nodes) {
     found = explore(probe, box, std::min(nodes, coarse));
     if (found.empty) return found;
   }
-  // What bulges between coarse nodes may pass the margin: leave more where the region ends at it.
-  constexpr int kMostLooks = 3;
-  for (int look = 1;; ++look) {
+  // What bulges between coarse nodes, or hangs on by a neck that they miss, may pass the margin:
+  // leave more where the region ends at it, and twice as much each time.
+  constexpr int kMostLooks = 6;
+  for (int look = 1;; ++look, margin *= 2) {
     found = explore(probe, box, nodes);
     if (found.empty || look == kMostLooks || !make_room(box, found, widest, margin)) return found;
   }
