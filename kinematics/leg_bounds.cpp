@@ -5,8 +5,6 @@
 namespace polyglide {
 namespace {
 
-constexpr double kSlack = 1e-9;  // [m, rad] as in LegKernel: a pose on its limit is allowed
-
 const Interval kAnything(-std::numeric_limits<double>::infinity(),
                          std::numeric_limits<double>::infinity());
 
@@ -283,6 +281,36 @@ IntervalMatrix LegBounds::matrix(const PoseBox& box, bool scaled) const {
     for (int k = 0; k < n; ++k)
       result(row.leg.drive, k) =
           axes_[k] < 3 ? force[axes_[k]] : moment[axes_[k] - 3] / characteristic_length_;
+  }
+  return result;
+}
+
+LegBounds::MovingRows LegBounds::moving_rows(const PoseBox& box) const {
+  const int n = static_cast<int>(axes_.size());
+  const IntervalMatrix zero(drives_, n);
+  MovingRows result{zero, {zero, zero, zero}};
+  const Turned turning = turn(box);
+  for (const Row& row : rows_) {
+    if (!row.primary) continue;
+    const Drive drive = solve(row, box, turning, {}, nullptr);
+    const auto put = [&](IntervalMatrix& matrix, const IntervalVector& force) {
+      const IntervalVector moment = cross(drive.arm, force);
+      for (int k = 0; k < n; ++k)
+        matrix(row.leg.drive, k) =
+            axes_[k] < 3 ? force[axes_[k]] : moment[axes_[k] - 3] / characteristic_length_;
+    };
+    put(result.rows, drive.along);
+    // A rod is v - place·g, a strut v; both over the length, on a guide with the sign of -side.
+    const bool strut = row.leg.kind == Leg::Kind::strut;
+    for (int j = 0; j < 3; ++j) {
+      IntervalVector rate;
+      for (int i = 0; i < 3; ++i) {
+        rate[i] = Interval(i == j ? 1.0 : 0.0);
+        if (!strut) rate[i] = -row.leg.side * (rate[i] - row.leg.direction[i] * drive.row[j]);
+        rate[i] /= row.length;
+      }
+      put(result.rates[j], rate);
+    }
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include "kinematics/interval_matrix.hpp"
 #include "kinematics/interval_rotation.hpp"
 #include "kinematics/leg_places.hpp"
+#include "kinematics/quadrics.hpp"
 #include "kinematics/solve.hpp"
 
 namespace polyglide {
@@ -48,6 +49,10 @@ class LegBounds {
   /// Encloses the limits in `wanted`; the others are left as they are.
   void enclose(const PoseBox& box, const Mask& wanted, std::vector<LimitBound>& bounds) const;
 
+  /// The limits of places alone, as at the angles zero: all that rods, strokes, cones and planes
+  /// say is of second degree. `rest`: the limits that are not among them.
+  [[nodiscard]] std::vector<QuadricLimit> quadrics(Mask& rest) const;
+
   /// Task Jacobian, drives × task axes, rotations per characteristic length. Entries are unbounded
   /// where a rod may be at the end of its reach.
   [[nodiscard]] IntervalMatrix jacobian(const PoseBox& box) const;
@@ -55,6 +60,13 @@ class LegBounds {
   /// The Jacobian with every rod's row multiplied by a positive number, so that it stays bounded at
   /// the end of the rod's reach: same rank, same sign of the determinant inside the reach.
   [[nodiscard]] IntervalMatrix rod_rows(const PoseBox& box) const;
+
+  /// rod_rows() and how they change with x, y and z. Angles zero.
+  struct MovingRows {
+    IntervalMatrix rows;
+    std::array<IntervalMatrix, 3> rates;  ///< not finite where a rod may be at the end of its reach
+  };
+  [[nodiscard]] MovingRows moving_rows(const PoseBox& box) const;
 
  private:
   struct Cone {
@@ -99,6 +111,9 @@ class LegBounds {
     IntervalVector along;  // the same times a positive number, always bounded
     IntervalVector arm;
   };
+
+  /// [m, rad] as in LegKernel: a pose on its limit is allowed.
+  static constexpr double kSlack = 1e-9;
 
   LegBounds() = default;
   std::size_t add(const std::string& name);

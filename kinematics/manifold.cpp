@@ -108,7 +108,7 @@ Projection pull_back(const Model& model, Posture& posture, const std::vector<int
     last = result.residual;
     idle = result.residual < kProgress * best ? 0 : idle + 1;
     best = std::min(best, result.residual);
-    if (idle >= kPatience && (pin != nullptr || best < kCloseEnough)) break;
+    if (idle >= kPatience && (pin != nullptr || goal || best < kCloseEnough)) break;
     if (!linearised || result.residual > kNear || idle > 0) {
       if (!goal) demand.jacobian = closure_jacobian(model, posture);
       linearised.emplace(restricted(std::move(demand.jacobian), active, pin));

@@ -31,9 +31,7 @@ NodeGrid make_grid(const Probe& probe, const Bounds& box, int nodes) {
 
 Points nodes_of(const NodeGrid& grid) {
   Points points;
-  points.x.reserve(grid.size());
-  points.y.reserve(grid.size());
-  points.z.reserve(grid.size());
+  points.reserve(grid.size());
   for (int k = 0; k < grid.count[2]; ++k)
     for (int j = 0; j < grid.count[1]; ++j)
       for (int i = 0; i < grid.count[0]; ++i) points.add(grid.at(i, j, k));
@@ -110,6 +108,23 @@ void measure_extent(Region& region) {
         region.extent.lower = region.extent.lower.cwiseMin(at);
         region.extent.upper = region.extent.upper.cwiseMax(at);
       }
+}
+
+/// Moves the sides of the box that the region touches outward, within `widest`. False when none is
+/// moved.
+bool make_room(Bounds& box, const Region& region, const Bounds& widest, double by) {
+  const NodeGrid& grid = region.grid;
+  const Vector3 first = grid.at(0, 0, 0),
+                last = grid.at(grid.count[0] - 1, grid.count[1] - 1, grid.count[2] - 1);
+  const Bounds before = box;
+  for (int k = 0; k < 3; ++k) {
+    if (grid.count[k] == 1) continue;
+    if (region.extent.lower[k] <= first[k])
+      box.lower[k] = std::max(widest.lower[k], box.lower[k] - by);
+    if (region.extent.upper[k] >= last[k])
+      box.upper[k] = std::min(widest.upper[k], box.upper[k] + by);
+  }
+  return box.lower != before.lower || box.upper != before.upper;
 }
 
 }  // namespace
@@ -248,7 +263,8 @@ Region explore(Probe& probe, const Bounds& box, int nodes) {
 
 Region explore(Probe& probe, int nodes) {
   const int coarse = probe.evaluator().closed_form() ? 10000 : 500;
-  Bounds box = search_bounds(probe);
+  const Bounds widest = search_bounds(probe);
+  Bounds box = widest;
   Region found = explore(probe, box, std::min(nodes, coarse));
   // A small workspace falls between the nodes of a wide box: look nearer to home.
   Points home;
@@ -260,19 +276,26 @@ Region explore(Probe& probe, int nodes) {
   }
   if (found.empty) return found;
   // Search bounds can be far too wide: close in.
+  double margin = 0;
   for (int look = 0; look < 2; ++look) {
-    const Vector3 margin = Vector3::Constant(found.grid.step);
+    margin = found.grid.step;
     const Vector3 before = box.upper - box.lower;
     for (int k = 0; k < 3; ++k) {
       if (!probe.active()[k]) continue;
-      box.lower[k] = std::max(box.lower[k], found.extent.lower[k] - margin[k]);
-      box.upper[k] = std::min(box.upper[k], found.extent.upper[k] + margin[k]);
+      box.lower[k] = std::max(box.lower[k], found.extent.lower[k] - margin);
+      box.upper[k] = std::min(box.upper[k], found.extent.upper[k] + margin);
     }
     if (look == 1 || ((box.upper - box.lower) - 0.5 * before).maxCoeff() >= 0) break;
     found = explore(probe, box, std::min(nodes, coarse));
     if (found.empty) return found;
   }
-  return explore(probe, box, nodes);
+  // What bulges between coarse nodes, or hangs on by a neck that they miss, may pass the margin:
+  // leave more where the region ends at it, and twice as much each time.
+  constexpr int kMostLooks = 6;
+  for (int look = 1;; ++look, margin *= 2) {
+    found = explore(probe, box, nodes);
+    if (found.empty || look == kMostLooks || !make_room(box, found, widest, margin)) return found;
+  }
 }
 
 }  // namespace polyglide

@@ -15,6 +15,11 @@ namespace polyglide {
 /// Points asked together: tool displacements from home [m].
 struct Points {
   std::vector<double> x, y, z;
+  void reserve(std::size_t count) {
+    x.reserve(count);
+    y.reserve(count);
+    z.reserve(count);
+  }
   void add(const Vector3& point) {
     x.push_back(point.x());
     y.push_back(point.y());
@@ -133,7 +138,8 @@ struct Region {
 /// Explores a box with about `nodes` nodes; fixes the probe's side when it is open.
 [[nodiscard]] Region explore(Probe& probe, const Bounds& box, int nodes);
 
-/// The same twice: coarsely over the search bounds, then over what was found.
+/// The same twice: coarsely over the search bounds, then over what was found and a margin, which
+/// grows where the region ends at it.
 [[nodiscard]] Region explore(Probe& probe, int nodes);
 
 }  // namespace polyglide

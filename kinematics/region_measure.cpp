@@ -113,6 +113,7 @@ class Measurer {
     for (std::size_t begin = 0; begin < cells.size(); begin += batch) {
       const std::size_t end = std::min(cells.size(), begin + batch);
       Points points;
+      points.reserve((end - begin) * per_cell);
       for (std::size_t c = begin; c < end; ++c) add_samples(cells[c], strata, first, points);
       const Probe::Answers answers = probe_.ask(points);
       for (std::size_t c = begin; c < end; ++c) use(c, answers, (c - begin) * per_cell, per_cell);
@@ -233,6 +234,7 @@ class Measurer {
     for (std::size_t begin = 0; begin < mixed_.size(); begin += batch) {
       const std::size_t end = std::min(mixed_.size(), begin + batch);
       Points points;
+      points.reserve((end - begin) * per_cell);
       for (std::size_t m = begin; m < end; ++m) {
         const Vector3 corner = grid_.at(mixed_[m][0], mixed_[m][1], mixed_[m][2]);
         for (int c = 0; c < nodes[2]; ++c)

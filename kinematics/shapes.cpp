@@ -81,6 +81,8 @@ Surface cylinder_surface(const Density& density) {
   }
   return [circle, density](const Shape& s) {
     std::vector<Points> parts(2);
+    parts[0].reserve(2 * circle.size());
+    parts[1].reserve(circle.size() * static_cast<std::size_t>(density.levels + density.rings + 2));
     const auto ring = [&](Points& part, double radius, double z, std::size_t stride) {
       for (std::size_t a = 0; a < circle.size(); a += stride)
         part.add({s[0] + radius * circle[a].x(), s[1] + radius * circle[a].y(), z});
@@ -99,6 +101,8 @@ Surface cylinder_surface(const Density& density) {
 Surface box_surface(const Density& density) {
   return [n = density.parts](const Shape& s) {
     std::vector<Points> parts(2);
+    parts[0].reserve(static_cast<std::size_t>(12 * n));
+    parts[1].reserve(static_cast<std::size_t>(6 * n * n));
     for (int k = 0; k <= n; ++k)
       for (int j = 0; j <= n; ++j)
         for (int i = 0; i <= n; ++i) {

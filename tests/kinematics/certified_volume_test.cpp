@@ -6,7 +6,8 @@
 #include <chrono>
 
 #include "kinematics/region_measure.hpp"
-#include "machines.hpp"
+#include "kinematics/workspace.hpp"
+#include "random_machine.hpp"
 
 namespace polyglide {
 namespace {
@@ -40,6 +41,35 @@ TEST(CertifiedVolume, OfDeltaOneIsKnownToAThousandth) {
   ASSERT_TRUE(wider);
   EXPECT_NEAR(wider->lower, 12.010e-3, 0.002 * 12.010e-3);
   EXPECT_GT(wider->lower, dut->upper);
+}
+
+TEST(CertifiedVolume, TakesFewCellsForAThousandth) {
+  // Gap and square of the cell shrink together: some four times the cells for a fourth of the gap.
+  for (const std::vector<std::string>& ignored :
+       {std::vector<std::string>{}, std::vector<std::string>{"triangle"}}) {
+    const auto rough = proved(catalog_machine("delta-1"), 1e-3, ignored),
+               fine = proved(catalog_machine("delta-1"), 2.5e-4, ignored);
+    ASSERT_TRUE(rough && fine);
+    EXPECT_TRUE(rough->reached && fine->reached);
+    EXPECT_LT(rough->cells, 80000);
+    EXPECT_LT(fine->cells, 6 * rough->cells);
+    EXPECT_GE(fine->lower, rough->lower * (1 - 1e-3));
+    EXPECT_LE(fine->lower, rough->upper);
+    EXPECT_GE(fine->upper, rough->lower);
+  }
+}
+
+TEST(CertifiedVolume, EnclosesWhatQuadratureFindsOnCatalogMachines) {
+  for (const char* name : {"linear-delta", "triglide"}) {
+    const Machine machine = catalog_machine(name);
+    const Workspace workspace = compute_workspace(machine);
+    const auto dut = proved(machine, 1e-3);
+    ASSERT_TRUE(dut) << name;
+    EXPECT_TRUE(dut->reached) << name;
+    EXPECT_EQ(workspace.method, "quadrature") << name;
+    EXPECT_LE(dut->lower, workspace.volume + workspace.error) << name;
+    EXPECT_GE(dut->upper, workspace.volume - workspace.error) << name;
+  }
 }
 
 TEST(CertifiedVolume, EnclosesTheClosedFormOfALinearDelta) {
@@ -89,6 +119,25 @@ TEST(CertifiedVolume, HoldsWhatSamplingFindsOnCatalogMachines) {
     EXPECT_GE(dut->upper, sampled * 0.99) << name;
     EXPECT_GT(dut->lower, 0) << name;
   }
+}
+
+TEST(CertifiedVolume, HoldsWhatSamplingFindsOfRandomMachines) {
+  std::mt19937_64 random(29);
+  int compared = 0;
+  for (int trial = 0; trial < 120; ++trial) {
+    const Machine machine = random_machine(random, trial % 2 == 0);
+    const auto dut = proved(machine, 5e-3, {}, 200000);
+    if (!dut) continue;  // home outside
+    const Evaluator evaluator(machine);
+    Probe probe(evaluator, Eigen::Quaterniond::Identity());
+    const RegionFineness fineness = region_fineness(5e-3, true);
+    const Region region = explore(probe, fineness.nodes);
+    const double sampled = measure_region(probe, region, fineness, 5e-3).value;
+    EXPECT_LE(dut->lower, sampled * 1.02) << trial;
+    EXPECT_GE(dut->upper, sampled * 0.98) << trial;
+    ++compared;
+  }
+  EXPECT_GT(compared, 5);
 }
 
 TEST(CertifiedVolume, ABudgetTooSmallLeavesWideBounds) {

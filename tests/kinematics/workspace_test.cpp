@@ -72,8 +72,7 @@ TEST(Workspace, ProvedBoundsHoldHalfOfWhatThreeSpheresShare) {
   EXPECT_TRUE(dut.certified);
   EXPECT_LE(dut.volume_lower, expected);
   EXPECT_GE(dut.volume_upper, expected);
-  // The face where det J = 0 is bounded by whole cells, not by planes as limits are.
-  EXPECT_LT(dut.volume_upper - dut.volume_lower, 2e-2 * expected);
+  EXPECT_LT(dut.volume_upper - dut.volume_lower, 1.5e-3 * expected);
   EXPECT_NEAR(dut.volume, expected, 1e-3 * expected);
   EXPECT_GT(dut.limits_hit.at("singularity"), 0.1);
 }
