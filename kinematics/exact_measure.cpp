@@ -310,19 +310,23 @@ std::optional<ExactMeasure> measure_exactly(const LineLimits& limits, const Vect
                                             const Bounds& extent, double size,
                                             const ExactSearch& search) {
   // Lines laid far too widely miss tips, and a size guessed too large asks for too little: both are
-  // put right by what was found.
+  // put right by what is found, first by a look that asks for little itself.
   constexpr int kTurns = 5;
+  constexpr double kLook = 1e-3;  // its tolerance
   Bounds where = extent;
   std::optional<ExactMeasure> measure;
   for (int turn = 0; turn < kTurns; ++turn) {
-    measure = Measurer(limits, where, size, search).run(inside);
+    ExactSearch asked = search;
+    if (turn == 0) asked.tolerance = std::max(kLook, search.tolerance);
+    measure = Measurer(limits, where, size, asked).run(inside);
     if (!measure || !(measure->value > 0) || measure->lines > search.lines) break;
     const Vector3 wide = where.upper - where.lower;
     const Vector3 found = measure->extent.upper - measure->extent.lower;
     const bool tight = found.x() >= wide.x() / 2 && found.y() >= wide.y() / 2;
-    if (tight && (measure->reached || measure->value >= size)) break;
+    const bool final = asked.tolerance == search.tolerance;
+    if (final && tight && (measure->reached || measure->value >= size)) break;
     size = std::min(size, measure->value);
-    where = measure->extent;
+    if (!tight) where = measure->extent;
   }
   return measure;
 }
