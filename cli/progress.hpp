@@ -16,7 +16,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `done` of `total` equal parts are finished. Redraws at most five times a second.
+  /// `done` of `total` equal parts are finished; total 0: how much is left is not known, and the
+  /// time so far is shown. Redraws at most five times a second.
   void update(double done, double total);
 
  private:

@@ -68,8 +68,9 @@ class Measurer {
   }
 
  private:
-  static constexpr double kShare = 8;  // part of the tolerance that planes take
-  static constexpr int kFirst = 64;    // planes to begin with
+  static constexpr double kShare = 8;         // part of the tolerance that planes take
+  static constexpr int kFirst = 64;           // planes to begin with
+  static constexpr std::size_t kSign = 4096;  // lines between two signs of life
 
   /// Lines in each plane to begin with: what is thinner than they are apart is missed, and at the
   /// finest tolerances that shows.
@@ -78,7 +79,7 @@ class Measurer {
   Line line(double x, double y) const {
     Line result;
     limits_.spans(x, y, result.spans);
-    ++lines_;
+    if (++lines_ % kSign == 0 && search_.working) search_.working();
     for (const Span& span : result.spans) {
       result.pattern.push_back(span.first);
       result.pattern.push_back(span.last);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "kinematics/line_limits.hpp"
@@ -19,6 +20,7 @@ struct ExactMeasure {
 struct ExactSearch {
   double tolerance = 1e-6;         ///< relative
   std::size_t lines = 20'000'000;  ///< most lines to examine
+  std::function<void()> working;   ///< called now and then, from any thread; may be empty
 };
 
 /// Volume (area) of the part of a workspace that holds `inside`: lengths of lines, whose ends are

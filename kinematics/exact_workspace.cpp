@@ -62,6 +62,8 @@ void measure_by_quadrature(Workspace& workspace, const Probe& probe, const Regio
   ExactSearch search;
   search.tolerance = std::min(1e-6, options.accuracy);
   search.lines = search.tolerance < 1e-6 ? 20'000'000 : 3'000'000;
+  // How many lines it will take shows only in the end.
+  if (options.progress) search.working = [&options] { options.progress(0, 0); };
   const bool flat = limits->dimensions() == 2;
   double& size = flat ? workspace.area : workspace.volume;
   if (region.empty) {

@@ -166,7 +166,7 @@ OrientationWorkspace orientation_workspace(const Machine& machine,
   if (options.progress)
     probe.set_counter([&, expected = 0.5 * size.azimuths * size.tilts * size.torsions](auto poses) {
       const auto done = static_cast<double>(poses);
-      options.progress(done, std::max(expected, done * 1.02));
+      options.progress(done, done < expected ? expected : 0);
     });
   const Turner turner(probe, options.at);
   const int home = turner.ask({Tilted{}})[0];

@@ -97,7 +97,7 @@ class Mapper {
       if (options_.progress) {
         const auto done = static_cast<double>(map_.poses);
         const double expected = (free_.closed_form() ? 1.5e5 : 1.2e4);
-        options_.progress(done, std::max(expected, done * 1.02));
+        options_.progress(done, done < expected ? expected : 0);
       }
     }
     return all;

@@ -136,7 +136,7 @@ PoseCounter counter_for(const WorkspaceOptions& options, double expected) {
   if (!options.progress) return {};
   return [report = options.progress, expected](std::size_t poses) {
     const auto done = static_cast<double>(poses);
-    report(done, std::max(expected, done * 1.02));
+    report(done, done < expected ? expected : 0);
   };
 }
 

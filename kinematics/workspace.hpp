@@ -26,7 +26,8 @@ struct WorkspaceOptions {
   bool volume_only = false;    ///< skip shapes, slices and rotation range: for tuning
   std::optional<Vector3> box;  ///< also: does a box of this size fit, and where [m]
   std::optional<std::pair<double, double>> cylinder;  ///< also: does diameter × height fit [m]
-  /// Told `done` of about `total` poses now and then, from one thread at a time or several.
+  /// Told `done` of about `total` poses now and then, from one thread at a time or several;
+  /// `total` 0 when more are needed than expected, and nobody knows how many.
   std::function<void(double done, double total)> progress;
 };
 
