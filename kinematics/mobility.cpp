@@ -161,7 +161,8 @@ void Analysis::choose_main_branch() {
   report_.locked_mobility = main_ ? main_->locked.mobility : 0;
   report_.locked_platform = main_ ? main_->locked.platform_rank.rank : 0;
   report_.surplus = report_.drives - (report_.finite - report_.locked_mobility);
-  report_.motions_meet = report_.home > report_.finite && (branches_.size() > 1 || departure_.cone);
+  report_.motions_meet = report_.home > report_.finite &&
+                         (branches_.size() > 1 || departure_.cone || departure_.blind);
   describe_task();
 }
 
@@ -243,9 +244,10 @@ void Analysis::decide() {
         "through home, although generic postures are held.");
   } else if (report_.motions_meet) {
     report_.verdict = Verdict::uncertain;
-    const std::string ways = branches_.size() > 1
-                                 ? fmt::format("{} of which meet at home", branches_.size())
-                                 : std::string("whose directions form a cone there");
+    const std::string ways =
+        branches_.size() > 1 ? fmt::format("{} of which meet at home", branches_.size())
+        : departure_.cone    ? std::string("whose directions form a cone there")
+                             : std::string("one of which was found; others may meet it there");
     reasons.push_back(
         fmt::format("Home is a constraint singularity: {} freedoms there, {} on the motion "
                     "branches, {}; the drives do not decide which way is taken.",

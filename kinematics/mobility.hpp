@@ -105,7 +105,8 @@ struct MobilityReport {
     std::string pattern;
   };
   std::vector<Branch> branches;
-  bool motions_meet = false;  ///< home is a constraint singularity with several ways out
+  bool motions_meet = false;  ///< home is a constraint singularity with several ways out, or one
+                              ///< beyond second order, where another is not excluded
   std::vector<ParasiticMotion> parasitic;
 
   // Evidence
