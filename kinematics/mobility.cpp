@@ -206,7 +206,8 @@ void Analysis::describe_task() {
 /// Generic postures do not show it: equal parallel legs, for example, let go at
 /// home only.
 void Analysis::look_for_self_motion() {
-  const bool settled = report_.locked_platform > 0 || report_.motions_meet;
+  const bool several = branches_.size() > 1 || departure_.cone;
+  const bool settled = report_.locked_platform > 0 || (report_.motions_meet && several);
   if (report_.home_locked_platform == 0 || settled) return;
   const Departure held =
       leave(model_, home_, home_locked_.kernel, true, walk_options(1, options_.steps), random_);
@@ -219,6 +220,8 @@ void Analysis::look_for_self_motion() {
     });
   });
   report_.residual = std::max(report_.residual, held.residual);
+  // A motion that was found says more than ways that are not excluded.
+  if (self_motion_) report_.motions_meet = false;
 }
 
 void Analysis::decide() {
