@@ -67,6 +67,7 @@ class Explorer {
   /// unchanged, when there is no such way.
   bool step(Posture& posture, const Eigen::VectorXd& rates, double length, Way way);
   bool closes(const Projection& projection);
+  [[nodiscard]] Place screened(Posture posture) const;
   [[nodiscard]] Eigen::MatrixXd kernel_of(const Freedoms& free) const;
   bool wander(Place& place, double length);
   bool leap(Posture& posture, const Eigen::VectorXd& rates);
@@ -124,6 +125,11 @@ bool Explorer::closes(const Projection& projection) {
   const bool closed = projection.residual <= options_.closure;
   nearly_ = nearly_ || (!closed && projection.residual < kNearlyClosed);
   return closed;
+}
+
+Place Explorer::screened(Posture posture) const {
+  Freedoms free = freedoms_at(model_, posture, Certainty::screened);
+  return {std::move(posture), std::move(free)};
 }
 
 Eigen::MatrixXd Explorer::kernel_of(const Freedoms& free) const {
@@ -280,8 +286,7 @@ std::optional<Place> Explorer::near_home(const Eigen::VectorXd& rates) {
   slow_ = false;
   if (!step(near, rates, kShort, Way::any)) return std::nullopt;
   if (slow_ && leap(farther, rates)) near = std::move(farther);
-  Freedoms free = freedoms_at(model_, near, Certainty::screened);
-  return Place{std::move(near), std::move(free)};
+  return screened(std::move(near));
 }
 
 /// Along a few members of a component, each way, until one leads off: a cusp, for example, can be
@@ -305,8 +310,7 @@ void Explorer::leap_along(const Eigen::MatrixXd& kernel,
       Posture near = home_;
       if (!leap(near, side * (kernel * component[i]))) continue;
       result_.blind = true;
-      Freedoms free = freedoms_at(model_, near, Certainty::screened);
-      meet({std::move(near), std::move(free)});
+      meet(screened(std::move(near)));
     }
 }
 

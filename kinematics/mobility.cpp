@@ -50,6 +50,7 @@ class Analysis {
   void note(const RankDecision& rank);
   void note(const Freedoms& freedoms);
   void describe_task();
+  [[nodiscard]] bool several_ways() const { return branches_.size() > 1 || departure_.cone; }
   [[nodiscard]] WalkOptions walk_options(int walks, int steps) const {
     return {walks, steps, kStep, std::max(kExact, kLoose * report_.noise), options_.leaps};
   }
@@ -161,8 +162,7 @@ void Analysis::choose_main_branch() {
   report_.locked_mobility = main_ ? main_->locked.mobility : 0;
   report_.locked_platform = main_ ? main_->locked.platform_rank.rank : 0;
   report_.surplus = report_.drives - (report_.finite - report_.locked_mobility);
-  report_.motions_meet = report_.home > report_.finite &&
-                         (branches_.size() > 1 || departure_.cone || departure_.blind);
+  report_.motions_meet = report_.home > report_.finite && (several_ways() || departure_.blind);
   describe_task();
 }
 
@@ -206,8 +206,7 @@ void Analysis::describe_task() {
 /// Generic postures do not show it: equal parallel legs, for example, let go at
 /// home only.
 void Analysis::look_for_self_motion() {
-  const bool several = branches_.size() > 1 || departure_.cone;
-  const bool settled = report_.locked_platform > 0 || (report_.motions_meet && several);
+  const bool settled = report_.locked_platform > 0 || (report_.motions_meet && several_ways());
   if (report_.home_locked_platform == 0 || settled) return;
   const Departure held =
       leave(model_, home_, home_locked_.kernel, true, walk_options(1, options_.steps), random_);

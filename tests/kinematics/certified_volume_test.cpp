@@ -102,6 +102,13 @@ TEST(CertifiedVolume, EnclosesTheVolumeOfAPrism) {
   EXPECT_GE(dut->upper, expected * (1 - 1e-7));
 }
 
+double sampled_volume(const Machine& machine) {
+  const Evaluator evaluator(machine);
+  Probe probe(evaluator, Eigen::Quaterniond::Identity());
+  const RegionFineness fineness = region_fineness(5e-3, true);
+  return measure_region(probe, explore(probe, fineness.nodes), fineness, 5e-3).value;
+}
+
 TEST(CertifiedVolume, HoldsWhatSamplingFindsOnCatalogMachines) {
   for (const char* name : {"tripod-70", "hexapod-6ups", "table1-2", "table1-6"}) {
     const Machine machine = catalog_machine(name);
@@ -110,11 +117,7 @@ TEST(CertifiedVolume, HoldsWhatSamplingFindsOnCatalogMachines) {
       std::printf("%s: none\n", name);
       continue;
     }
-    const Evaluator evaluator(machine);
-    Probe probe(evaluator, Eigen::Quaterniond::Identity());
-    const RegionFineness fineness = region_fineness(5e-3, true);
-    const Region region = explore(probe, fineness.nodes);
-    const double sampled = measure_region(probe, region, fineness, 5e-3).value;
+    const double sampled = sampled_volume(machine);
     EXPECT_LE(dut->lower, sampled * 1.01) << name;
     EXPECT_GE(dut->upper, sampled * 0.99) << name;
     EXPECT_GT(dut->lower, 0) << name;
@@ -128,11 +131,7 @@ TEST(CertifiedVolume, HoldsWhatSamplingFindsOfRandomMachines) {
     const Machine machine = random_machine(random, trial % 2 == 0);
     const auto dut = proved(machine, 5e-3, {}, 200000);
     if (!dut) continue;  // home outside
-    const Evaluator evaluator(machine);
-    Probe probe(evaluator, Eigen::Quaterniond::Identity());
-    const RegionFineness fineness = region_fineness(5e-3, true);
-    const Region region = explore(probe, fineness.nodes);
-    const double sampled = measure_region(probe, region, fineness, 5e-3).value;
+    const double sampled = sampled_volume(machine);
     EXPECT_LE(dut->lower, sampled * 1.02) << trial;
     EXPECT_GE(dut->upper, sampled * 0.98) << trial;
     ++compared;

@@ -46,12 +46,7 @@ TEST(CertifyBox, TheOrthoglidesCubeIsAsConditionedAsPublished) {
 }
 
 TEST(CertifyBox, PrismsAreCertifiedUpToTheirFaces) {
-  const Machine machine = prism({{Vector3::UnitX(), 0.3},
-                                 {-Vector3::UnitX(), 0.1},
-                                 {Vector3::UnitY(), 0.2},
-                                 {-Vector3::UnitY(), 0.2},
-                                 {Vector3::UnitZ(), 0.15},
-                                 {-Vector3::UnitZ(), 0.05}});
+  const Machine machine = block();
   const Vector3 size(0.4, 0.4, 0.2), centre(0.1, 0, 0.05);
   EXPECT_EQ(certify_box(machine, region_of(size, centre)).verdict, CertifyVerdict::certified);
   const BoxCertificate outside =

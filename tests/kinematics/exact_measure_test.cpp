@@ -118,12 +118,7 @@ TEST(ExactMeasure, AFiveBarReachesALens) {
 }
 
 TEST(ExactMeasure, APrismOfPlanes) {
-  const Machine machine = prism({{Vector3::UnitX(), 0.3},
-                                 {-Vector3::UnitX(), 0.1},
-                                 {Vector3::UnitY(), 0.2},
-                                 {-Vector3::UnitY(), 0.2},
-                                 {Vector3::UnitZ(), 0.15},
-                                 {-Vector3::UnitZ(), 0.05}});
+  const Machine machine = block();
   EXPECT_NEAR(reach_of(machine, 1e-9).value, 0.4 * 0.4 * 0.2, 1e-9 * 0.032);
 }
 

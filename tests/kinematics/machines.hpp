@@ -137,6 +137,16 @@ inline Machine prism(const std::vector<HalfSpaceLimit::Plane>& planes) {
   return prepare(mechanism, task_of({0, 1, 2}));
 }
 
+/// A prism of 0.4 × 0.4 × 0.2 m³ about (0.1, 0, 0.05) m.
+inline Machine block() {
+  return prism({{Vector3::UnitX(), 0.3},
+                {-Vector3::UnitX(), 0.1},
+                {Vector3::UnitY(), 0.2},
+                {-Vector3::UnitY(), 0.2},
+                {Vector3::UnitZ(), 0.15},
+                {-Vector3::UnitZ(), 0.05}});
+}
+
 inline Machine catalog_machine(const std::string& name) {
   return prepare(expand(find_layout(name)));
 }

@@ -78,12 +78,7 @@ TEST(Workspace, ProvedBoundsHoldHalfOfWhatThreeSpheresShare) {
 }
 
 TEST(Workspace, APrismHasItsVolumeWhateverTheGrid) {
-  const Machine machine = prism({{Vector3::UnitX(), 0.3},
-                                 {-Vector3::UnitX(), 0.1},
-                                 {Vector3::UnitY(), 0.2},
-                                 {-Vector3::UnitY(), 0.2},
-                                 {Vector3::UnitZ(), 0.15},
-                                 {-Vector3::UnitZ(), 0.05}});
+  const Machine machine = block();
   const Workspace workspace = volume_of(machine);
   EXPECT_NEAR(workspace.volume, 0.4 * 0.4 * 0.2, 1e-3 * 0.032);
   EXPECT_TRUE(workspace.lower.isApprox(Vector3(-0.1, -0.2, -0.05), 1e-3));
