@@ -69,7 +69,7 @@ class Explorer {
   bool closes(const Projection& projection);
   [[nodiscard]] Place screened(Posture posture) const;
   [[nodiscard]] Eigen::MatrixXd kernel_of(const Freedoms& free) const;
-  bool wander(Place& place, double length);
+  bool wander(Place& place, double length, Certainty certainty);
   bool leap(Posture& posture, const Eigen::VectorXd& rates);
   bool leave_smoothly(const Eigen::MatrixXd& kernel);
   [[nodiscard]] std::vector<Eigen::VectorXd> translations(const Eigen::MatrixXd& kernel);
@@ -107,7 +107,8 @@ bool Explorer::step(Posture& posture, const Eigen::VectorXd& rates, double lengt
   increments(active_) = length * along;
   advance(model_, straight, increments.cwiseProduct(freedom_scale(model_)));
   Posture there = posture;
-  const Projection projection = step_along(model_, there, active_, along, length);
+  const int patience = way == Way::straight ? kQuick + 1 : kMostIterations;
+  const Projection projection = step_along(model_, there, active_, along, length, patience);
   bool slow = projection.iterations > kQuick;
   if (!closes(projection) || (slow && way == Way::straight)) return false;
   const double most = way == Way::straight ? kStraight : kCrossed;
@@ -160,13 +161,13 @@ void find_span(Branch& branch, const std::vector<Eigen::VectorXd>& directions) {
 /// A step along a random freedom, shortened where the long one leaves what closes or may
 /// have crossed to another branch: there the way bends or the tangent space turns at once, or has
 /// another dimension. Keeps away from singular postures, where branches meet and counts waver.
-bool Explorer::wander(Place& place, double length) {
+bool Explorer::wander(Place& place, double length, Certainty certainty) {
   const Eigen::MatrixXd kernel = kernel_of(place.free);
   const Eigen::VectorXd rates = kernel * random_direction(random_, kernel.cols());
   for (int halving = 0; halving < 4; ++halving, length /= 2) {
     Posture posture = place.posture;
     if (!step(posture, rates, length, Way::gentle)) continue;
-    Freedoms free = freedoms_at(model_, posture, Certainty::screened);
+    Freedoms free = freedoms_at(model_, posture, certainty);
     if (free.rank.smallest < kNearSingular * place.free.rank.smallest) continue;
     const Eigen::MatrixXd there = kernel_of(free);
     if (there.cols() != kernel.cols() || separation(kernel, there) > kTurned) continue;
@@ -210,10 +211,12 @@ bool Explorer::walk_far(Branch& branch, const Place& near) {
 
 /// Postures on the way are screened; the counts of the last are confirmed.
 bool Explorer::go_on(Place& place) {
-  int made = 0;
-  while (made < options_.steps && wander(place, options_.step)) ++made;
-  place.free = freedoms_at(model_, place.posture);
-  return made > 0 || options_.steps == 0;
+  int left = options_.steps;
+  while (left > 0 &&
+         wander(place, options_.step, left == 1 ? Certainty::confirmed : Certainty::screened))
+    --left;
+  if (left > 0) place.free = freedoms_at(model_, place.posture);
+  return left < options_.steps || options_.steps == 0;
 }
 
 bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {

@@ -12,7 +12,7 @@ struct WalkOptions {
   int steps = 2;       ///< long steps to each of them
   double step = 0.25;  ///< length of a long step [rad, or length/size of the fastest joint]
   double closure =
-      1e-10;  ///< loop error that is still closed; more for a drawing that is not exact
+      1e-10;      ///< loop error that is still closed; more for a drawing that is not exact
   int leaps = 8;  ///< members of a component tried where short steps show no way out
 };
 

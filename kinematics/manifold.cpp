@@ -12,8 +12,9 @@ constexpr double kClosed = 1e-12;      // aim; Newton's last step usually lands 
 constexpr double kCloseEnough = 1e-7;  // when Newton has stagnated: loops of a nine-digit drawing
                                        // with redundant constraints close no better
 constexpr double kNear = 1e-6;  // residual from which the last linearisation takes Newton home
-constexpr int kMostIterations = 40;
 constexpr int kPolishes = 6;
+constexpr double kSettled = 0.5;  // of the error before: polishing gains no more
+constexpr double kRounded = 1e-15;
 constexpr double kNudge = 0.01;    // a polishing step: more is a drawing's noise taken for meaning
 constexpr double kWeakest = 1e-9;  // of the largest pivot: less is rounding
 constexpr double kLate = 1e-3;     // residual below which Newton at a regular posture at least
@@ -91,7 +92,7 @@ class Linearised {
 
 /// Newton by damped normal equations; with a pin only across it.
 Projection pull_back(const Model& model, Posture& posture, const std::vector<int>& active,
-                     const Goal& goal, const Eigen::VectorXd* pin) {
+                     const Goal& goal, const Eigen::VectorXd* pin, int most = kMostIterations) {
   Projection result;
   if (model.loop_joints.empty() && !goal) return {true, 0, 0};
   double best = std::numeric_limits<double>::infinity(), last = best;
@@ -101,9 +102,7 @@ Projection pull_back(const Model& model, Posture& posture, const std::vector<int
     Demand demand =
         goal ? loops_and(goal, model, posture) : Demand{closure_residual(model, posture), {}};
     result.residual = demand.residual.lpNorm<Eigen::Infinity>();  // 0 when nothing is asked
-    if (result.residual < kClosed || result.iterations == kMostIterations ||
-        !(result.residual < 1e3))
-      break;
+    if (result.residual < kClosed || result.iterations == most || !(result.residual < 1e3)) break;
     result.linear = last < kLate && result.residual > kLinear * last;
     last = result.residual;
     idle = result.residual < kProgress * best ? 0 : idle + 1;
@@ -186,8 +185,10 @@ double polish(const Model& model, Posture& posture, const std::vector<int>& acti
     }
     const double residual = closure_residual(model, trial).cwiseAbs().maxCoeff();
     if (!(residual < least)) break;
+    const bool settled = residual > kSettled * least || residual < kRounded;
     least = residual;
     posture = trial;
+    if (settled) break;
   }
   return least;
 }
@@ -208,11 +209,11 @@ Eigen::VectorXd tangent(const Model& model, const Posture& posture, const std::v
 }
 
 Projection step_along(const Model& model, Posture& posture, const std::vector<int>& active,
-                      const Eigen::VectorXd& tangent, double length) {
+                      const Eigen::VectorXd& tangent, double length, int most) {
   Posture trial = posture;
   move(model, trial, active, length * tangent);
   const Eigen::VectorXd pin = tangent.normalized();
-  const Projection projection = pull_back(model, trial, active, {}, &pin);
+  const Projection projection = pull_back(model, trial, active, {}, &pin, most);
   if (projection.closed) posture = std::move(trial);
   return projection;
 }

@@ -11,6 +11,9 @@ namespace polyglide {
 /// end.
 constexpr double kFarthestWay = 1e4;
 
+/// Newton's method gives up after so many iterations.
+constexpr int kMostIterations = 40;
+
 /// How far drives are from other positions: the most moved one counts [sizes of the machine, or
 /// rad].
 [[nodiscard]] double drive_distance(const Model& model, const Eigen::VectorXd& from,
@@ -65,10 +68,11 @@ double polish(const Model& model, Posture& posture, const std::vector<int>& acti
 /// Moves `length` along a tangent [rad, or length/size of the fastest joint] and pulls back
 /// onto the manifold across it, so that the way made along the tangent stays made: a
 /// freedom that does not continue ends unclosed instead of back where it began.
-/// The posture is unchanged when the loops cannot be closed again.
+/// The posture is unchanged when the loops cannot be closed again within so many iterations at
+/// `most`.
 [[nodiscard]] Projection step_along(const Model& model, Posture& posture,
                                     const std::vector<int>& active, const Eigen::VectorXd& tangent,
-                                    double length);
+                                    double length, int most = kMostIterations);
 
 /// Largest displacement between two postures, of any body or of one:
 /// rotation [rad] or translation/size.

@@ -38,6 +38,7 @@ class Analysis {
       : model_(model), options_(options), random_(options.seed), home_(home(model)) {}
 
   void look_at_home();
+  void ask_held_system();
   void explore_branches();
   void choose_main_branch();
   void look_for_self_motion();
@@ -89,7 +90,11 @@ void Analysis::look_at_home() {
   report_.drives = static_cast<int>(model_.drives.size());
   report_.kutzbach =
       static_cast<int>(model_.freedoms.size()) - 6 * static_cast<int>(model_.loop_joints.size());
-  // The drive-locked system itself: how far home is from singular, and a second opinion.
+  if (options_.evidence) ask_held_system();
+}
+
+/// The drive-locked system itself: how far home is from singular, and a second opinion.
+void Analysis::ask_held_system() {
   const std::vector<int> passive = passive_freedoms(model_);
   const RankDecision held = rank_of(columns(closure_jacobian(model_, home_), passive));
   report_.margin = held.largest > 0 ? held.smallest / held.largest : 0;

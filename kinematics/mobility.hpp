@@ -94,8 +94,9 @@ struct MobilityReport {
   std::string motion;   ///< kind of motion in words: "Schoenflies motion: …", "translation", …
 
   int drives = 0, locked_mobility = 0, locked_platform = 0, home_locked_platform = 0, surplus = 0;
-  double rank_gap = 0, margin = 0;
-  double noise = 0;  ///< largest relative singular value taken for zero: precision of the drawing
+  double rank_gap = 0;
+  double margin = 0;  ///< smallest over largest singular value with the drives held; with evidence
+  double noise = 0;   ///< largest relative singular value taken for zero: precision of the drawing
   double residual = 0;   ///< worst loop closure left at a posture reached [rad, or length/size]
   int obstructions = 0;  ///< second-order conditions on the freedoms at home; 0 when all continue
 

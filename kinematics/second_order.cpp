@@ -1,5 +1,6 @@
 #include "kinematics/second_order.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +11,7 @@ namespace polyglide {
 namespace {
 
 constexpr int kStarts = 24;  // two branches are told with one in ten thousand missed
+constexpr int kMembers = 8;  // of a component known in closed form: as many as anybody tries
 constexpr int kIterations = 30;
 constexpr double kSatisfied = 1e-8;  // of a form whose coefficients are about 1
 constexpr double kStuck = 1e-14;     // a step: where slopes vanish without a zero
@@ -54,7 +56,7 @@ std::vector<Eigen::MatrixXd> quadratic_forms(const Model& model, const Posture& 
                                              const std::vector<int>& active) {
   const Eigen::MatrixXd scaled = scaled_screws(model, freedom_screws(model, posture));
   const Eigen::MatrixXd jacobian = columns(closure_jacobian(model, posture), active);
-  const Eigen::MatrixXd unresisted = kernel_of(jacobian.transpose()).basis;
+  const Eigen::MatrixXd unresisted = screened_kernel(jacobian.transpose()).basis;
   const Eigen::Index k = kernel.cols(), pairs = k * (k + 1) / 2;
   Eigen::MatrixXd squares(unresisted.cols(), k), forms(unresisted.cols(), pairs);
   for (Eigen::Index p = 0; p < k; ++p)
@@ -130,6 +132,9 @@ struct Component {
   bool linear = false;  ///< the whole tangent space of a member consists of solutions
 };
 
+/// Members of every component.
+using Zeros = std::vector<std::vector<Eigen::VectorXd>>;
+
 /// Whether all forms vanish on the space a projector projects to: P A P = 0.
 bool vanish_on(const std::vector<Eigen::MatrixXd>& forms, const Eigen::MatrixXd& projector) {
   return std::ranges::all_of(forms, [&](const Eigen::MatrixXd& form) {
@@ -170,6 +175,48 @@ bool belongs(const std::vector<Eigen::MatrixXd>& forms, const Component& compone
   return leads(forms, nearest, target, steps) || leads(forms, nearest, target, 4 * steps);
 }
 
+/// Components of the common zeros of forms in `size` coordinates, found from random starts.
+Zeros common_zeros(const std::vector<Eigen::MatrixXd>& forms, int size, std::mt19937_64& random) {
+  Zeros zeros;
+  std::vector<Component> known;
+  for (int i = 0; i < kStarts && size > 0; ++i) {
+    Eigen::VectorXd zero = random_direction(random, size);
+    if (!solve(forms, zero)) continue;
+    std::size_t place = 0;
+    while (place < known.size() && !belongs(forms, known[place], zero)) ++place;
+    Eigen::MatrixXd tangent = tangent_projector(forms, zero);
+    if (place == known.size()) {
+      known.push_back({{}, vanish_on(forms, tangent)});
+      zeros.emplace_back();
+    }
+    known[place].members.push_back({zero, std::move(tangent)});
+    zeros[place].push_back(std::move(zero));
+  }
+  return zeros;
+}
+
+/// The same in closed form for one form that feels every coordinate. With the eigenvalues' scale
+/// taken out it is |y₊|² = |y₋|²: nothing where one part is missing, two planes where both have
+/// one coordinate, else one cone (both its halves, as directions count without sign).
+Zeros zeros_of(const Eigen::MatrixXd& form, std::mt19937_64& random) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(form);  // values ascending
+  const Eigen::VectorXd stretch = eigen.eigenvalues().cwiseAbs().cwiseSqrt().cwiseInverse();
+  const Eigen::Index size = form.rows(), negative = (eigen.eigenvalues().array() < 0).count();
+  if (negative == 0 || negative == size) return {};
+  const auto zero = [&](Eigen::VectorXd below, Eigen::VectorXd above) -> Eigen::VectorXd {
+    Eigen::VectorXd both(size);
+    both << below.normalized(), above.normalized();
+    return (eigen.eigenvectors() * stretch.cwiseProduct(both)).normalized();
+  };
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
+  if (size == 2) return {{zero(one, one)}, {zero(one, -one)}};
+  Zeros zeros(1);
+  for (Eigen::Index i = 0; i < std::max<Eigen::Index>(kMembers, size); ++i)
+    zeros[0].push_back(
+        zero(random_direction(random, negative), random_direction(random, size - negative)));
+  return zeros;
+}
+
 }  // namespace
 
 Eigen::VectorXd random_direction(std::mt19937_64& random, Eigen::Index size) {
@@ -196,24 +243,19 @@ SecondOrder second_order(const Model& model, const Posture& posture, const Eigen
   std::vector<Eigen::MatrixXd> reduced;
   for (const Eigen::MatrixXd& form : forms) reduced.push_back(bound.transpose() * form * bound);
 
-  std::vector<Component> known;
-  for (int i = 0; i < kStarts && felt > 0; ++i) {
-    Eigen::VectorXd zero = random_direction(random, felt);
-    if (!solve(reduced, zero)) continue;
-    std::size_t place = 0;
-    while (place < known.size() && !belongs(reduced, known[place], zero)) ++place;
-    Eigen::MatrixXd tangent = tangent_projector(reduced, zero);
-    if (place == known.size()) {
-      known.push_back({{}, vanish_on(reduced, tangent)});
-      result.components.emplace_back();
-    }
-    known[place].members.push_back({zero, std::move(tangent)});
-    const Eigen::VectorXd more = random_direction(random, loose.cols());
-    result.components[place].push_back((bound * zero + loose * more).normalized());
+  const auto zeros =
+      reduced.size() == 1 ? zeros_of(reduced[0], random) : common_zeros(reduced, felt, random);
+  for (const auto& component : zeros) {
+    auto& members = result.components.emplace_back();
+    const std::size_t enough = loose.cols() > 0 ? kMembers : 1;
+    for (std::size_t i = 0; i < std::max(component.size(), enough); ++i)
+      members.push_back(
+          (bound * component[i % component.size()] + loose * random_direction(random, loose.cols()))
+              .normalized());
   }
-  if (!known.empty() || loose.cols() == 0) return result;
+  if (!zeros.empty() || loose.cols() == 0) return result;
   result.components.emplace_back();
-  for (int i = 0; i < kStarts; ++i)
+  for (int i = 0; i < kMembers; ++i)
     result.components[0].push_back((loose * random_direction(random, loose.cols())).normalized());
   return result;
 }

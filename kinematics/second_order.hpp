@@ -19,7 +19,8 @@ struct SecondOrder {
 /// Around a loop of screws S_i passed in turn, rates q̇ need accelerations q̈ with
 /// Σ S_i q̈_i + Σ_{i<j} [S_i, S_j] q̇_i q̇_j = 0. They exist when the bracket sum vanishes on every
 /// wrench that the loops' screws cannot resist (the left kernel of the Jacobian), which
-/// gives as many quadratic forms in q̇. Their common zeros among the freedoms are found by
+/// gives as many quadratic forms in q̇. The zeros of a single form are known in closed form: two
+/// planes or one cone. The common zeros of several are found by
 /// Gauss-Newton from random starts: generic members of every solution component. Two belong to
 /// one component when a way within the solutions leads from one to the other and the tangent
 /// space turns with it, instead of jumping where components cross.
@@ -27,7 +28,7 @@ struct SecondOrder {
 /// @param active the freedoms that may accelerate (all, or the passive ones)
 /// Source: Kieffer 1994, Differential analysis of bifurcations and isolated singularities for
 /// robots and mechanisms; Wohlhart 1999, degrees of shakiness.
-/// Cost: about 0.3 ms for a 4-PUU machine.
+/// Cost: about 30 µs for 18×20 with at most one form, 0.1 ms or more with several.
 [[nodiscard]] SecondOrder second_order(const Model& model, const Posture& posture,
                                        const Eigen::MatrixXd& kernel,
                                        const std::vector<int>& active, std::mt19937_64& random);
