@@ -28,13 +28,13 @@ constexpr std::size_t kTries = 3;  // members of a component of directions that 
 /// manifolds, straight and with Newton's method back at once.
 enum class Way { any, gentle, straight };
 
-/// Sine of the largest angle from the smaller space to the larger.
-double separation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+/// Whether the sine of the largest angle from the smaller space to the larger is above a limit.
+bool apart(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double limit) {
   const Eigen::MatrixXd small = orthonormal(a.cols() <= b.cols() ? a : b);
   const Eigen::MatrixXd large = orthonormal(a.cols() <= b.cols() ? b : a);
-  if (small.cols() == 0) return 0;
   const Eigen::MatrixXd rest = small - large * (large.transpose() * small);
-  return singular_values(rest)[0];
+  // The norm of all bounds the largest singular value, and mostly settles it.
+  return rest.norm() > limit && singular_values(rest)[0] > limit;
 }
 
 /// A random mixture of all columns in which none is weak, so that a freedom that does not continue
@@ -170,7 +170,7 @@ bool Explorer::wander(Place& place, double length, Certainty certainty) {
     Freedoms free = freedoms_at(model_, posture, certainty);
     if (free.rank.smallest < kNearSingular * place.free.rank.smallest) continue;
     const Eigen::MatrixXd there = kernel_of(free);
-    if (there.cols() != kernel.cols() || separation(kernel, there) > kTurned) continue;
+    if (there.cols() != kernel.cols() || apart(kernel, there, kTurned)) continue;
     place = {std::move(posture), std::move(free)};
     return true;
   }
@@ -244,7 +244,7 @@ void Explorer::meet(const Place& near) {
   Branch branch{kernel_of(near.free), {}, {}, 0};
   const bool known = std::ranges::any_of(result_.branches, [&](const Branch& other) {
     return other.near_kernel.cols() == branch.near_kernel.cols() &&
-           separation(other.near_kernel, branch.near_kernel) < kSameBranch;
+           !apart(other.near_kernel, branch.near_kernel, kSameBranch);
   });
   if (known) return;
   const bool moves = is_shaky(branch, near) || walk_far(branch, near);
