@@ -17,7 +17,7 @@ constexpr double kClear = 1e5;         // a rank gap below it tells no shaky fre
 constexpr double kPolished = 0.1;      // of a closure error: less is left at a double zero only
 constexpr double kCrossed = 0.4;       // of a long step
 constexpr double kTurned = 0.6;        // sine of the angle a tangent space turns on a long step
-constexpr double kNearSingular = 0.1;  // of the smallest singular value one step before
+constexpr double kNearSingular = 0.1;  // of the smallest pivot one step before
 constexpr double kSameBranch = 0.35;   // sine of the angle between tangent spaces, 20 degrees
 constexpr double kLong = 0.2;          // a leap, where short steps show nothing
 constexpr double kNearlyClosed = 1e-7;
@@ -168,7 +168,7 @@ bool Explorer::wander(Place& place, double length, Certainty certainty) {
     Posture posture = place.posture;
     if (!step(posture, rates, length, Way::gentle)) continue;
     Freedoms free = freedoms_at(model_, posture, certainty);
-    if (free.rank.smallest < kNearSingular * place.free.rank.smallest) continue;
+    if (free.pivot < kNearSingular * place.free.pivot) continue;
     const Eigen::MatrixXd there = kernel_of(free);
     if (there.cols() != kernel.cols() || apart(kernel, there, kTurned)) continue;
     place = {std::move(posture), std::move(free)};

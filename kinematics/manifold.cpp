@@ -13,8 +13,7 @@ constexpr double kCloseEnough = 1e-7;  // when Newton has stagnated: loops of a 
                                        // with redundant constraints close no better
 constexpr double kNear = 1e-6;  // residual from which the last linearisation takes Newton home
 constexpr int kPolishes = 6;
-constexpr double kSettled = 0.5;  // of the error before: polishing gains no more
-constexpr double kRounded = 1e-15;
+constexpr double kSettled = 0.5;   // of the error before: polishing gains no more
 constexpr double kNudge = 0.01;    // a polishing step: more is a drawing's noise taken for meaning
 constexpr double kWeakest = 1e-9;  // of the largest pivot: less is rounding
 constexpr double kLate = 1e-3;     // residual below which Newton at a regular posture at least
@@ -185,7 +184,7 @@ double polish(const Model& model, Posture& posture, const std::vector<int>& acti
     }
     const double residual = closure_residual(model, trial).cwiseAbs().maxCoeff();
     if (!(residual < least)) break;
-    const bool settled = residual > kSettled * least || residual < kRounded;
+    const bool settled = residual > kSettled * least;
     least = residual;
     posture = trial;
     if (settled) break;

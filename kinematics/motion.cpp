@@ -74,7 +74,7 @@ Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& jacobian, Certa
   }
   const Kernel tree = certainty == Certainty::confirmed ? kernel_of(reduced.topRows(rows))
                                                         : screened_kernel(reduced.topRows(rows));
-  Kernel kernel{tree.decision, Eigen::MatrixXd(jacobian.cols(), tree.basis.cols())};
+  Kernel kernel{tree.decision, tree.pivot, Eigen::MatrixXd(jacobian.cols(), tree.basis.cols())};
   kernel.basis(split.tree, Eigen::all) = tree.basis;
   for (int loop = 0; loop < loops; ++loop)
     kernel.basis(split.closing[loop], Eigen::all) = rates[loop] * tree.basis;
@@ -104,6 +104,7 @@ Freedoms freedoms_at(const Model& model, const Posture& posture, Certainty certa
   Freedoms result;
   Kernel kernel = closure_kernel(model, closure_jacobian(model, posture), certainty);
   result.rank = kernel.decision;
+  result.pivot = kernel.pivot;
   result.kernel = std::move(kernel.basis);
   result.mobility = static_cast<int>(result.kernel.cols());
   if (certainty == Certainty::screened) return result;

@@ -18,6 +18,7 @@ enum class Certainty { confirmed, screened };
 /// Instantaneous freedoms of a mechanism at one posture.
 struct Freedoms {
   RankDecision rank;         ///< of the loop-closure Jacobian, or of the drives' rates when held
+  double pivot = 0;          ///< as in Kernel: how far from singular, for comparing postures
   Eigen::MatrixXd kernel;    ///< freedoms × mobility, scaled rates
   Eigen::MatrixXd platform;  ///< 6×mobility: platform twist per kernel column, [w; v of tool/size]
   int mobility = 0;

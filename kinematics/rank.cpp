@@ -106,7 +106,8 @@ std::optional<Kernel> kernel_by_pivots(const Eigen::MatrixXd& matrix, double ref
     return pivot > kSurelyReal * top || pivot < kSurelyNoise * top;
   });
   if (!sure) return std::nullopt;
-  Kernel kernel{decide_rank(pivots, reference), {}};
+  Kernel kernel{decide_rank(pivots, reference), 0, {}};
+  kernel.pivot = kernel.decision.smallest;
   const Eigen::Index left = matrix.cols() - kernel.decision.rank;
   kernel.basis = Eigen::MatrixXd::Zero(matrix.cols(), left);
   kernel.basis.bottomRows(left).setIdentity();
@@ -131,7 +132,7 @@ Kernel kernel_of(const Eigen::MatrixXd& matrix, double reference) {
     kernel->decision = decision;
     return *std::move(kernel);
   }
-  return {decision, svd_of(matrix).v.rightCols(matrix.cols() - decision.rank)};
+  return {decision, decision.smallest, svd_of(matrix).v.rightCols(matrix.cols() - decision.rank)};
 }
 
 Kernel screened_kernel(const Eigen::MatrixXd& matrix, double reference) {

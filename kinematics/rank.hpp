@@ -55,6 +55,8 @@ struct RankScale {
 /// Rank and kernel of a matrix.
 struct Kernel {
   RankDecision decision;
+  double pivot = 0;       ///< smallest kept pivot of the QR decomposition where that decided, else
+                          ///< singular value: comparable between screened and confirmed kernels
   Eigen::MatrixXd basis;  ///< columns: orthonormal basis of the kernel, cols × (cols - rank)
 };
 

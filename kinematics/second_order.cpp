@@ -13,6 +13,8 @@ namespace {
 constexpr int kStarts = 24;  // two branches are told with one in ten thousand missed
 constexpr int kMembers = 8;  // of a component known in closed form: as many as anybody tries
 constexpr int kIterations = 30;
+/// At a double zero, met to 1e-8 at best, forms keep slopes up to a few 1e-6 where they have none.
+constexpr RankScale kFelt{2e-5, 1e-2};
 constexpr double kSatisfied = 1e-8;  // of a form whose coefficients are about 1
 constexpr double kStuck = 1e-14;     // a step: where slopes vanish without a zero
 constexpr double kPolished = 1e-12;  // double zeros are then met to a millionth
@@ -238,7 +240,7 @@ SecondOrder second_order(const Model& model, const Posture& posture, const Eigen
   for (std::size_t i = 0; i < forms.size(); ++i)
     all.middleRows(freedoms * static_cast<Eigen::Index>(i), freedoms) = forms[i];
   const Svd svd = svd_of(all);
-  const int felt = decide_rank(svd.values, 1).rank;
+  const int felt = decide_rank(svd.values, 1, kFelt).rank;
   const Eigen::MatrixXd bound = svd.v.leftCols(felt), loose = svd.v.rightCols(freedoms - felt);
   std::vector<Eigen::MatrixXd> reduced;
   for (const Eigen::MatrixXd& form : forms) reduced.push_back(bound.transpose() * form * bound);
