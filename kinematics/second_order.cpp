@@ -11,10 +11,10 @@ namespace polyglide {
 namespace {
 
 constexpr int kStarts = 24;  // two branches are told with one in ten thousand missed
-constexpr int kMembers = 8;  // of a component known in closed form: as many as anybody tries
 constexpr int kIterations = 30;
 /// At a double zero, met to 1e-8 at best, forms keep slopes up to a few 1e-6 where they have none.
-constexpr RankScale kFelt{2e-5, 1e-2};
+/// The search for common zeros does not see them, the closed form would.
+constexpr RankScale kSoft{2e-5, 1e-2};
 constexpr double kSatisfied = 1e-8;  // of a form whose coefficients are about 1
 constexpr double kStuck = 1e-14;     // a step: where slopes vanish without a zero
 constexpr double kPolished = 1e-12;  // double zeros are then met to a millionth
@@ -197,6 +197,10 @@ Zeros common_zeros(const std::vector<Eigen::MatrixXd>& forms, int size, std::mt1
   return zeros;
 }
 
+/// How many members of a component known in closed form are drawn: as many as anybody tries, and
+/// enough to span it.
+Eigen::Index members_for(Eigen::Index dimension) { return std::max<Eigen::Index>(8, dimension); }
+
 /// The same in closed form for one form that feels every coordinate. With the eigenvalues' scale
 /// taken out it is |y₊|² = |y₋|²: nothing where one part is missing, two planes where both have
 /// one coordinate, else one cone (both its halves, as directions count without sign).
@@ -213,7 +217,7 @@ Zeros zeros_of(const Eigen::MatrixXd& form, std::mt19937_64& random) {
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
   if (size == 2) return {{zero(one, one)}, {zero(one, -one)}};
   Zeros zeros(1);
-  for (Eigen::Index i = 0; i < std::max<Eigen::Index>(kMembers, size); ++i)
+  for (Eigen::Index i = 0; i < members_for(size); ++i)
     zeros[0].push_back(
         zero(random_direction(random, negative), random_direction(random, size - negative)));
   return zeros;
@@ -240,7 +244,7 @@ SecondOrder second_order(const Model& model, const Posture& posture, const Eigen
   for (std::size_t i = 0; i < forms.size(); ++i)
     all.middleRows(freedoms * static_cast<Eigen::Index>(i), freedoms) = forms[i];
   const Svd svd = svd_of(all);
-  const int felt = decide_rank(svd.values, 1, kFelt).rank;
+  const int felt = decide_rank(svd.values, 1, forms.size() == 1 ? kSoft : RankScale{}).rank;
   const Eigen::MatrixXd bound = svd.v.leftCols(felt), loose = svd.v.rightCols(freedoms - felt);
   std::vector<Eigen::MatrixXd> reduced;
   for (const Eigen::MatrixXd& form : forms) reduced.push_back(bound.transpose() * form * bound);
@@ -249,15 +253,15 @@ SecondOrder second_order(const Model& model, const Posture& posture, const Eigen
       reduced.size() == 1 ? zeros_of(reduced[0], random) : common_zeros(reduced, felt, random);
   for (const auto& component : zeros) {
     auto& members = result.components.emplace_back();
-    const std::size_t enough = loose.cols() > 0 ? kMembers : 1;
-    for (std::size_t i = 0; i < std::max(component.size(), enough); ++i)
+    const Eigen::Index enough = loose.cols() > 0 ? members_for(freedoms) : 1;
+    for (std::size_t i = 0; i < std::max<std::size_t>(component.size(), enough); ++i)
       members.push_back(
           (bound * component[i % component.size()] + loose * random_direction(random, loose.cols()))
               .normalized());
   }
   if (!zeros.empty() || loose.cols() == 0) return result;
   result.components.emplace_back();
-  for (int i = 0; i < kMembers; ++i)
+  for (Eigen::Index i = 0; i < members_for(freedoms); ++i)
     result.components[0].push_back((loose * random_direction(random, loose.cols())).normalized());
   return result;
 }

@@ -99,6 +99,56 @@ TEST(SecondOrder, AFlatParallelogramHasTwoWaysOut) {
   EXPECT_EQ(found.components.size(), 2u);
 }
 
+TEST(SecondOrder, KnowsTheTwoWaysOfAFlatParallelogram) {
+  // Shortening along the line, a ω₁² + ω₂² - a ω₃² = 0 with ω₂ = a (ω₃ - ω₁): ω₃ = ω₁, or
+  // ω₃ = -ω₁ (1 + a)/(1 - a).
+  const Model model = compile(flat_parallelogram());
+  const Eigen::MatrixXd kernel = freedoms_at(model, home(model)).kernel;
+  std::vector<double> ratios;
+  for (const auto& component : look(flat_parallelogram()).components) {
+    const Eigen::VectorXd rates = kernel * component.front();
+    ratios.push_back(-rates[3] / rates[0]);
+  }
+  std::ranges::sort(ratios);
+  ASSERT_EQ(ratios.size(), 2u);
+  EXPECT_NEAR(ratios[0], -1.4 / 0.6, 1e-9);
+  EXPECT_NEAR(ratios[1], 1, 1e-9);
+}
+
+TEST(SecondOrder, OfFiveHingesInLineIsACone) {
+  // Shortening along the line: Σ (x_{i+1} - x_i) θ_i² = 0 over the links, θ_i their angles.
+  const std::vector<double> x{0, 0.3, 1.1, 0.8, 0.2};
+  Planar chain;
+  for (int i = 0; i < 5; ++i) chain.hinge(i, (i + 1) % 5, x[i], 0);
+  const Mechanism mechanism = chain.with_platform(2);
+  const Model model = compile(mechanism);
+  const Eigen::MatrixXd kernel = freedoms_at(model, home(model)).kernel;
+  const SecondOrder found = look(mechanism);
+  ASSERT_EQ(found.components.size(), 1u);
+  Eigen::MatrixXd members(kernel.cols(), found.components[0].size());
+  for (Eigen::Index m = 0; m < members.cols(); ++m) {
+    members.col(m) = found.components[0][m];
+    const Eigen::VectorXd rates = kernel * members.col(m);
+    double angle = 0, shortening = 0;
+    for (int i = 0; i < 4; ++i) {
+      angle += rates[i];
+      shortening += (x[i + 1] - x[i]) * angle * angle;
+    }
+    EXPECT_NEAR(shortening, 0, 1e-12);
+  }
+  EXPECT_EQ(rank_of(members).rank, 3);
+}
+
+TEST(SecondOrder, WithoutConditionsSpansAllFreedoms) {
+  Planar chain;
+  for (int i = 0; i < 12; ++i) chain.hinge(i, i + 1, i, i % 2);
+  const SecondOrder found = look(chain.with_platform(12));
+  ASSERT_EQ(found.components.size(), 1u);
+  Eigen::MatrixXd members(12, found.components[0].size());
+  for (Eigen::Index m = 0; m < members.cols(); ++m) members.col(m) = found.components[0][m];
+  EXPECT_EQ(rank_of(members).rank, 12);
+}
+
 TEST(SecondOrder, SetsNoConditionAtARegularPosture) {
   const Mechanism mechanism = Planar()
                                   .hinge(0, 1, 0, 0)
