@@ -72,8 +72,9 @@ Kernel closure_kernel(const Model& model, const Eigen::MatrixXd& jacobian, Certa
                        .triangularView<Eigen::Upper>()
                        .solve(tree.topRows(own.cols()));
   }
-  const Kernel tree = certainty == Certainty::confirmed ? kernel_of(reduced.topRows(rows))
-                                                        : screened_kernel(reduced.topRows(rows));
+  // Screws are about 1 in these units: where the closing joints leave rounding only, it has rank 0.
+  const Kernel tree = certainty == Certainty::confirmed ? kernel_of(reduced.topRows(rows), 1)
+                                                        : screened_kernel(reduced.topRows(rows), 1);
   Kernel kernel{tree.decision, tree.pivot, Eigen::MatrixXd(jacobian.cols(), tree.basis.cols())};
   kernel.basis(split.tree, Eigen::all) = tree.basis;
   for (int loop = 0; loop < loops; ++loop)

@@ -124,6 +124,25 @@ TEST(Mobility, OfATableOnEqualParallelRodsIsTranslation) {
     }
 }
 
+TEST(Mobility, OfAHingeInTwoBearingsDrawnToNineDigitsIsARotation) {
+  // The second bearing, a metre along the axis, repeats all that the first demands.
+  const Vector3 axis(0.379153124, 0.925312468, 0.00630439914);
+  for (const double noise : {0.0, 5e-10}) {
+    Mechanism mechanism;
+    mechanism.bodies = {"base", "door"};
+    mechanism.platform = 1;
+    mechanism.joints = {joint_of("first", JointType::revolute, 0, 1, {0, 0, 0}, axis.normalized()),
+                        joint_of("second", JointType::revolute, 0, 1,
+                                 axis + Vector3(noise, 0, -noise), axis.normalized())};
+    mechanism.joints[0].driven = {0};
+    const MobilityReport report = check(mechanism);
+    EXPECT_EQ(report.verdict, Verdict::determinate) << noise;
+    EXPECT_EQ(report.finite, 1) << noise;
+    EXPECT_EQ(report.pattern, "0T1R") << noise;
+    EXPECT_EQ(report.redundant_constraints, 5) << noise;
+  }
+}
+
 TEST(Mobility, OfATableOnFourUprightRodsOnARectangleIsTranslation) {
   // (R₁₂ + R₂₁) = 4 q₁ q₂ = 0 and (Rᵀt - t) ⟂ z: branches R = 1, q₁ = 0 and q₂ = 0, two freedoms
   // each.
