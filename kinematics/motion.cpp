@@ -134,8 +134,10 @@ TaskSpace task_axes(const Freedoms& freedoms) {
   const int dof = freedoms.platform_rank.rank;
   if (dof == 0) return task;
   const Svd svd = svd_of(angular);
+  // Of more than three freedoms some turn, however little.
   task.rotations =
-      std::min(decide_rank(svd.values, freedoms.platform_rank.largest, kTurning).rank, dof);
+      std::clamp(decide_rank(svd.values, freedoms.platform_rank.largest, kTurning).rank,
+                 std::max(0, dof - 3), std::min(dof, 3));
   task.translations = dof - task.rotations;
 
   Eigen::MatrixXd translating = freedoms.platform.bottomRows(3);
