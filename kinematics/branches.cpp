@@ -87,6 +87,7 @@ class Explorer {
   WalkOptions options_;
   std::mt19937_64& random_;
   std::vector<int> active_;
+  Eigen::Index at_home_ = 0;  ///< instantaneous freedoms there
   bool slow_ = false;    ///< a step ended where a freedom that does not continue is instantaneous
   bool nearly_ = false;  ///< a way was turned down that closes nearly
   Departure result_;
@@ -248,8 +249,10 @@ void Explorer::meet(const Place& near) {
   });
   if (known) return;
   const bool moves = is_shaky(branch, near) || walk_far(branch, near);
-  // Closed by chance where home is singular to a high order, with counts that say nothing.
-  if (!moves && near.free.rank.gap < kClear) return;
+  // Closed by chance where home is singular to a high order, with counts that say nothing: were
+  // there a branch with all of home's freedoms, walks would get on.
+  const bool all = branch.near_kernel.cols() == at_home_;
+  if (!moves && (all || near.free.rank.gap < kClear)) return;
   result_.branches.push_back(std::move(branch));
 }
 
@@ -333,6 +336,7 @@ void Explorer::leave_by_second_order(const Eigen::MatrixXd& kernel) {
 
 Departure Explorer::leave(const Eigen::MatrixXd& kernel) {
   if (kernel.cols() == 0) return {};
+  at_home_ = kernel.cols();
   result_.smooth = leave_smoothly(kernel);
   if (!result_.smooth) {
     result_.branches.clear();
