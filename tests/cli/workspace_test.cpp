@@ -71,12 +71,13 @@ TEST(WorkspaceCommand, PlanarMachinesHaveAreas) {
 
 TEST(WorkspaceCommand, RefusesWhatCannotBe) {
   refused({"workspace", "delta-1", "--accuracy", "1e-20"}, "--accuracy");
-  refused({"workspace", "delta-1", "--accuracy", "nan"}, "no number");
+  refused({"workspace", "delta-1", "--accuracy", "nan"}, "--accuracy takes a number");
   refused({"workspace", "delta-1", "--box", "-1x2x3"}, "3 positive lengths");
   refused({"workspace", "delta-1", "--orientations-at", "0,0,0"}, "this one commands XYZ");
   refused({"workspace", "hexapod-6ups", "--orientations-at", "0,inf,0"}, "finite numbers");
   refused({"workspace", "hexapod-6ups", "--orientations-at", "1,2"}, "takes x,y,z");
-  refused({"workspace", "hexapod-6ups", "--total-orientation", "nan"}, "no number");
+  refused({"workspace", "hexapod-6ups", "--total-orientation", "nan"},
+          "--total-orientation takes a number");
   refused({"workspace", "hexapod-6ups", "--total-orientation", "200"}, "tilts up to 180");
   refused({"workspace", "delta-1", "--total-orientation", "5"}, "commands XYZ");
   refused({"workspace", "hexapod-6ups", "--torsion", "5"}, "--total-orientation");
