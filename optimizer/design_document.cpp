@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "catalog/counted.hpp"
 #include "kinematics/scene.hpp"
 #include "optimizer/duel.hpp"
 #include "optimizer/parallel.hpp"
@@ -50,12 +51,11 @@ Json all_measures_json(const Family& family) {
 Json requirement_rows(const DesignFindings& findings) {
   const std::string moves = findings.families.empty() ? "not met" : "met";
   Json rows = Json::array();
-  rows.push_back(
-      {{"name", "motion"},
-       {"asked", motion_text(findings.brief)},
-       {"verdict", moves},
-       {"note", fmt::format("{} families of layouts with this motion and a determinate verdict",
-                            findings.families.size())}});
+  rows.push_back({{"name", "motion"},
+                  {"asked", motion_text(findings.brief)},
+                  {"verdict", moves},
+                  {"note", counted(findings.families.size(), "family", "families") +
+                               " of layouts with this motion and a determinate verdict"}});
   rows.push_back({{"name", "drives"},
                   {"asked", std::to_string(findings.brief.drives)},
                   {"verdict", moves},
@@ -155,9 +155,8 @@ void add_pictures(const DesignFindings& findings, const std::vector<const Family
   for (std::size_t i = 0; i < ranking.size(); ++i) {
     const Family& family = *findings.satisfying[i];
     if (std::ranges::find(full, &family) != full.end()) continue;
-    ranking[i]["scene"] =
-        picture_of(machine_for(expand(family.layout, family.tuned->best.values), family.task,
-                               findings.brief.requirements.zone));
+    ranking[i]["scene"] = picture_of(machine_for(expand(family.layout, family.tuned->best.values),
+                                                 family.task, findings.brief.requirements.zone));
   }
 }
 
