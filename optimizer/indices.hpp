@@ -38,6 +38,9 @@ struct Index {
 /// The `indices` list of a stored run (docs/run-format.md).
 [[nodiscard]] nlohmann::ordered_json indices_json();
 
+/// A label as it reads within a sentence: with a small first letter.
+[[nodiscard]] std::string lowered(std::string label);
+
 /// What is asked of a design.
 struct Requirements {
   Zone zone;

@@ -42,6 +42,7 @@ TEST(WorkspaceCommand, ASingularityMapIsDrawn) {
   const auto file = std::filesystem::path(testing::TempDir()) / "polyglide-map.svg";
   const json dut = answer({"workspace", "hexapod-6ups", "--singularity-map", "ab", "--json",
                            "--quiet", "-o", file.string()});
+  EXPECT_EQ(dut.at("slice"), "AB through home");
   EXPECT_FALSE(dut.at("curves").empty());
   EXPECT_EQ(dut.at("curves")[0].at("kind"), "direct");
   std::ifstream stream(file);
@@ -49,6 +50,13 @@ TEST(WorkspaceCommand, ASingularityMapIsDrawn) {
   text << stream.rdbuf();
   EXPECT_NE(text.str().find("<polyline class=\"c direct\""), std::string::npos);
   std::filesystem::remove(file);
+}
+
+TEST(WorkspaceCommand, ThePageOfASingularityMapNamesItsSliceAndCountsShreds) {
+  const std::string page =
+      run_polyglide({"workspace", "3-rrr-planar", "--singularity-map", "xy@0,0,0,0,0,20"}).out;
+  EXPECT_NE(page.find("singularities over XY at C 20°;"), std::string::npos) << page;
+  EXPECT_EQ(page.find("curve of 2 points"), std::string::npos) << page;
 }
 
 TEST(WorkspaceCommand, AnEmptyWorkspaceSaysWhatStopsHome) {
