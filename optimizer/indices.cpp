@@ -159,6 +159,11 @@ std::vector<std::string> objective_words() {
   return words;
 }
 
+std::string label_of(const std::string& key) {
+  const auto index = std::ranges::find(indices(), key, &Index::key);
+  return index == indices().end() ? key : index->label;
+}
+
 std::string lowered(std::string label) {
   if (!label.empty())
     label[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(label[0])));
