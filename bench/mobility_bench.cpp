@@ -1,16 +1,19 @@
 // Full checks of candidates (home, branches, a generic posture, drives held, verdict), beside what
-// numpy needs for the four ranks alone. Argument: a folder for the matrices numpy is given.
+// numpy needs for the four ranks alone: single machines, and candidates of a space by verdict.
+// Argument: a folder for the matrices numpy is given.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <random>
 
 #include "catalog/catalog.hpp"
 #include "kinematics/branches.hpp"
 #include "kinematics/manifold.hpp"
 #include "kinematics/mobility.hpp"
+#include "synthesis/enumerate.hpp"
 
 namespace polyglide {
 namespace {
@@ -59,9 +62,7 @@ void write_matrix(std::ofstream& file, const Eigen::MatrixXd& matrix) {
 }
 
 /// The four matrices whose ranks the decision needs: home and generic, free and held.
-void write_matrices(const std::string& folder, const std::string& name, const Model& model) {
-  std::ofstream file(folder + "/mobility-" + name + ".txt");
-  file.precision(17);
+void write_matrices(std::ofstream& file, const Model& model) {
   std::mt19937_64 random(1);
   const Posture start = home(model);
   const Departure departure =
@@ -75,10 +76,37 @@ void write_matrices(const std::string& folder, const std::string& name, const Mo
   }
 }
 
-void check(benchmark::State& state, const Mechanism& mechanism) {
+using Group = std::vector<Mechanism>;
+
+void check(benchmark::State& state, const Group& group) {
   for (auto _ : state)
-    benchmark::DoNotOptimize(analyse_mobility(compile(mechanism), screening_options(1)));
-  state.SetItemsProcessed(state.iterations());
+    for (const Mechanism& mechanism : group)
+      benchmark::DoNotOptimize(analyse_mobility(compile(mechanism), screening_options(1)));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(group.size()));
+}
+
+void add_rows(const std::string& folder, const std::string& name, const Group& group) {
+  std::ofstream file(folder + "/mobility-" + name + ".txt");
+  file.precision(17);
+  for (const Mechanism& mechanism : group) write_matrices(file, compile(mechanism));
+  benchmark::RegisterBenchmark(("check " + name + "/polyglide").c_str(),
+                               [group](benchmark::State& state) { check(state, group); });
+}
+
+/// Of a space, candidates with at most 18 closure equations by their verdict, from all over it.
+std::map<Verdict, Group> candidates(const std::string& file) {
+  constexpr std::uint64_t kStride = 7;
+  constexpr std::size_t kMost = 16, kLoops = 3;
+  const Space space = load_space(file);
+  std::map<Verdict, Group> groups;
+  for (std::uint64_t index = 0; index < raw_count(space); index += kStride) {
+    const Mechanism mechanism = expand(candidate_layout(space, index, std::to_string(index)));
+    const Model model = compile(mechanism);
+    if (model.loops.size() > kLoops) continue;
+    Group& group = groups[analyse_mobility(model, screening_options(1)).verdict];
+    if (group.size() < kMost) group.push_back(mechanism);
+  }
+  return groups;
 }
 
 }  // namespace
@@ -88,15 +116,13 @@ int main(int count, char** words) {
   using namespace polyglide;
   if (count < 2) return 1;
   const std::string folder = words[1];
-  std::vector<Mechanism> machines;
-  for (int i = 1; i <= 6; ++i)
-    machines.push_back(expand(find_layout("table1-" + std::to_string(i))));
-  machines.push_back(eleven_struts());
-  for (const Mechanism& mechanism : machines) {
-    write_matrices(folder, mechanism.name, compile(mechanism));
-    benchmark::RegisterBenchmark(("check " + mechanism.name + "/polyglide").c_str(),
-                                 [mechanism](benchmark::State& state) { check(state, mechanism); });
+  for (int i = 1; i <= 6; ++i) {
+    const std::string name = "table1-" + std::to_string(i);
+    add_rows(folder, name, {expand(find_layout(name))});
   }
+  add_rows(folder, "11-ups", {eleven_struts()});
+  for (const auto& [verdict, group] : candidates("examples/spaces/table1.json"))
+    add_rows(folder, std::string(to_string(verdict)) + " candidates", group);
   benchmark::Initialize(&count, words);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

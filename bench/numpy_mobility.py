@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The four ranks of a mobility decision by numpy: singular values of the closure matrices at home and at
 a generic posture, free and with drives held. It is given the postures; finding them is not timed.
+A file holds one machine or a group, four matrices each.
 Usage: numpy_mobility.py FOLDER, prints {name: {"rate": candidates per second}}."""
 import glob
 import json
@@ -41,10 +42,10 @@ def best_rate(work):
 def main(folder):
     found = {}
     for path in sorted(glob.glob(f"{folder}/mobility-*.txt")):
-        four = matrices(path)
+        all_of_them = matrices(path)
         name = os.path.basename(path)[len("mobility-"):-len(".txt")]
         found[f"check {name}/numpy, four ranks only"] = {
-            "rate": best_rate(lambda: [rank(matrix) for matrix in four])}
+            "rate": len(all_of_them) / 4 * best_rate(lambda: [rank(matrix) for matrix in all_of_them])}
     print(json.dumps(found))
 
 

@@ -4,20 +4,22 @@ import json
 import os
 import sys
 
+SLOW = 100  # rows below so many a second say how long one takes
+
 
 def rates(folder):
-    """Best rate and operations of every row; peers that are not installed left no file."""
+    """Best rate, operations and cells of every row; peers that are not installed left no file."""
     found, means = {}, {}
-    for name in ("batch", "forward", "mobility", "kdl"):
+    for name in ("batch", "forward", "mobility", "volume", "kdl"):
         for row in read(f"{folder}/{name}.json").get("benchmarks", []):
             if row.get("run_type") != "iteration":
                 continue
-            best = found.get(row["name"], (0, 0))
-            found[row["name"]] = max(best, (row["items_per_second"], row.get("flops", 0)))
+            best = found.get(row["name"], (0, 0, 0))
+            found[row["name"]] = max(best, (row["items_per_second"], row.get("flops", 0), row.get("cells", 0)))
             means[row["name"]] = row.get("mean_index", 0)
     for name in ("numpy", "numpy_mobility", "octave"):
         for work, row in read(f"{folder}/{name}.json").items():
-            found[work] = (row["rate"], 0)
+            found[work] = (row["rate"], 0, 0)
             means[work] = row.get("mean_index", 0)
     check(means)
     return found
@@ -52,16 +54,17 @@ def table(folder):
              "", "| work | how | M/s per core | operations | of peak | best kernel / it |",
              "|---|---|---|---|---|---|"]
     best = {}
-    for name, (rate, _) in found.items():
+    for name, (rate, _, _) in found.items():
         work = name.rsplit("/", 1)[0]
         best[work] = max(best.get(work, 0), rate)
-    for name, (rate, operations) in sorted(found.items()):
+    for name, (rate, operations, cells) in sorted(found.items()):
         work, how = name.rsplit("/", 1)
         if work == "peak":
             continue
         share = f"{100 * rate * operations / peaks[how]:.0f} %" if how in peaks and operations else ""
-        count = f"{operations:.0f}" if operations else ""
-        lines.append(f"| {work} | {how} | {rate / 1e6:.3g} | {count} | {share} |"
+        count = f"{operations:.0f}" if operations else f"{cells:.0f} cells" if cells else ""
+        speed = f"{rate / 1e6:.3g}" if rate > SLOW else f"{1 / rate:.2g} s each"
+        lines.append(f"| {work} | {how} | {speed} | {count} | {share} |"
                      f" {best[work] / rate:.1f} |")
     return "\n".join(lines)
 

@@ -66,93 +66,93 @@ bool has_axis(JointType type) {
 
 Json joint_to_json(const Joint& joint, const Mechanism& mechanism) {
   const Units& units = mechanism.units;
-  Json json;
-  json["name"] = joint.name;
-  json["type"] = to_string(joint.type);
-  json["between"] = {mechanism.bodies[joint.bodies[0]], mechanism.bodies[joint.bodies[1]]};
-  json["at"] = in_unit(joint.at, units.metres);
+  Json written;
+  written["name"] = joint.name;
+  written["type"] = to_string(joint.type);
+  written["between"] = {mechanism.bodies[joint.bodies[0]], mechanism.bodies[joint.bodies[1]]};
+  written["at"] = in_unit(joint.at, units.metres);
   if (joint.type == JointType::universal)
-    json["axes"] = {direction(joint.axes[0]), direction(joint.axes[1])};
-  if (has_axis(joint.type)) json["axis"] = direction(joint.axes[0]);
-  if (joint.type == JointType::helical) json["pitch"] = pitch_per_turn(joint.pitch, units);
-  if (!joint.driven.empty()) json["drive"] = drive(joint);
-  if (!joint.range.empty()) json["range"] = ranges(joint, units);
+    written["axes"] = {direction(joint.axes[0]), direction(joint.axes[1])};
+  if (has_axis(joint.type)) written["axis"] = direction(joint.axes[0]);
+  if (joint.type == JointType::helical) written["pitch"] = pitch_per_turn(joint.pitch, units);
+  if (!joint.driven.empty()) written["drive"] = drive(joint);
+  if (!joint.range.empty()) written["range"] = ranges(joint, units);
   if (joint.cone) {
-    json["cone"] = in_unit(*joint.cone, units.radians);
-    json["cone_axis"] = direction(joint.cone_axis);
+    written["cone"] = in_unit(*joint.cone, units.radians);
+    written["cone_axis"] = direction(joint.cone_axis);
   }
-  return json;
+  return written;
 }
 
 Json limit_to_json(const HalfSpaceLimit& limit, const Mechanism& mechanism) {
   const double metres = mechanism.units.metres;
-  Json json;
-  json["name"] = limit.name;
-  json["body"] = mechanism.bodies[limit.body];
-  json["points"] = Json::array();
-  for (const Vector3& point : limit.points) json["points"].push_back(in_unit(point, metres));
-  json["inside"] = Json::array();
+  Json written;
+  written["name"] = limit.name;
+  written["body"] = mechanism.bodies[limit.body];
+  written["points"] = Json::array();
+  for (const Vector3& point : limit.points) written["points"].push_back(in_unit(point, metres));
+  written["inside"] = Json::array();
   for (const auto& plane : limit.planes)
-    json["inside"].push_back(
+    written["inside"].push_back(
         {{"normal", direction(plane.normal)}, {"offset", in_unit(plane.offset, metres)}});
-  return json;
+  return written;
 }
 
 Json limit_to_json(const ClearanceLimit& limit, const Mechanism& mechanism) {
-  Json json{{"name", limit.name}, {"clearance", in_unit(limit.distance, mechanism.units.metres)}};
-  if (!limit.between[0].empty()) json["between"] = limit.between;
-  if (limit.joined) json["joined"] = true;
-  return json;
+  Json written{{"name", limit.name}, {"clearance", in_unit(limit.distance, mechanism.units.metres)}};
+  if (!limit.between[0].empty()) written["between"] = limit.between;
+  if (limit.joined) written["joined"] = true;
+  return written;
 }
 
 Json limit_to_json(const ExpressionLimit& limit) {
-  Json json{{"name", limit.name}, {"expression", limit.expression}};
-  if (std::isfinite(limit.range.min)) json["min"] = tidy(limit.range.min);
-  if (std::isfinite(limit.range.max)) json["max"] = tidy(limit.range.max);
-  return json;
+  Json written{{"name", limit.name}, {"expression", limit.expression}};
+  if (std::isfinite(limit.range.min)) written["min"] = tidy(limit.range.min);
+  if (std::isfinite(limit.range.max)) written["max"] = tidy(limit.range.max);
+  return written;
 }
 
 Json shape_to_json(const BodyShape& shape, const Mechanism& mechanism) {
   const Units& units = mechanism.units;
-  Json json{{"of", shape.name}};
-  if (shape.radius > 0) json["diameter"] = in_unit(2 * shape.radius, units.metres);
+  Json written{{"of", shape.name}};
+  if (shape.radius > 0) written["diameter"] = in_unit(2 * shape.radius, units.metres);
   if (shape.form == BodyShape::Form::mesh) {
-    json["mesh"] = shape.mesh_file;
-    json["at"] = in_unit(shape.mesh_at, units.metres);
-    json["turn"] = in_unit(shape.mesh_turn, units.radians);
-    return json;
+    written["mesh"] = shape.mesh_file;
+    written["at"] = in_unit(shape.mesh_at, units.metres);
+    written["turn"] = in_unit(shape.mesh_turn, units.radians);
+    return written;
   }
-  json["form"] = shape.form == BodyShape::Form::plate ? "plate" : "line";
+  written["form"] = shape.form == BodyShape::Form::plate ? "plate" : "line";
   for (const BodyPoint& point : shape.points)
-    json["points"].push_back(in_unit(point.at, units.metres));
-  return json;
+    written["points"].push_back(in_unit(point.at, units.metres));
+  return written;
 }
 
 }  // namespace
 
 Json to_json(const Mechanism& mechanism) {
-  Json json;
-  json["format"] = "polyglide/mechanism/1";
-  json["name"] = mechanism.name;
-  if (!mechanism.title.empty()) json["title"] = mechanism.title;
-  if (!mechanism.source.empty()) json["source"] = mechanism.source;
-  if (!mechanism.about.empty()) json["about"] = mechanism.about;
-  json["units"] = {{"length", mechanism.units.length}, {"angle", mechanism.units.angle}};
-  json["base"] = mechanism.bodies[mechanism.base];
-  json["platform"] = mechanism.bodies[mechanism.platform];
-  json["tool"] = in_unit(mechanism.tool, mechanism.units.metres);
-  json["joints"] = Json::array();
+  Json written;
+  written["format"] = "polyglide/mechanism/1";
+  written["name"] = mechanism.name;
+  if (!mechanism.title.empty()) written["title"] = mechanism.title;
+  if (!mechanism.source.empty()) written["source"] = mechanism.source;
+  if (!mechanism.about.empty()) written["about"] = mechanism.about;
+  written["units"] = {{"length", mechanism.units.length}, {"angle", mechanism.units.angle}};
+  written["base"] = mechanism.bodies[mechanism.base];
+  written["platform"] = mechanism.bodies[mechanism.platform];
+  written["tool"] = in_unit(mechanism.tool, mechanism.units.metres);
+  written["joints"] = Json::array();
   for (const Joint& joint : mechanism.joints)
-    json["joints"].push_back(joint_to_json(joint, mechanism));
+    written["joints"].push_back(joint_to_json(joint, mechanism));
   for (const BodyShape& shape : mechanism.shapes)
-    json["shapes"].push_back(shape_to_json(shape, mechanism));
+    written["shapes"].push_back(shape_to_json(shape, mechanism));
   for (const HalfSpaceLimit& limit : mechanism.limits)
-    json["limits"].push_back(limit_to_json(limit, mechanism));
+    written["limits"].push_back(limit_to_json(limit, mechanism));
   for (const ExpressionLimit& limit : mechanism.expressions)
-    json["limits"].push_back(limit_to_json(limit));
+    written["limits"].push_back(limit_to_json(limit));
   for (const ClearanceLimit& limit : mechanism.clearances)
-    json["limits"].push_back(limit_to_json(limit, mechanism));
-  return json;
+    written["limits"].push_back(limit_to_json(limit, mechanism));
+  return written;
 }
 
 }  // namespace polyglide

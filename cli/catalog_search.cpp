@@ -103,11 +103,10 @@ std::vector<Condition> conditions_of(const CatalogQuery& query) {
                           [&](const CatalogRow& row) {
                             return std::vector{is_pattern(query.motion) ? row.motion : row.axes};
                           }});
-  if (query.drives)
-    conditions.push_back({"--drives", std::to_string(*query.drives),
-                          [&](const CatalogRow& row) {
-                            return static_cast<int>(drive_kinds(row.machine.mechanism).size()) ==
-                                   *query.drives;
+  if (!query.drives.empty())
+    conditions.push_back({"--drives", query.drives,
+                          [count = std::stoull(query.drives)](const CatalogRow& row) {
+                            return drive_kinds(row.machine.mechanism).size() == count;
                           },
                           [](const CatalogRow&) { return std::vector<std::string>{}; }});
   if (!query.drive_type.empty())
@@ -164,9 +163,8 @@ void check_query(CatalogQuery& query) {
   if (query.limb.find_first_not_of(kJointLetters) != std::string::npos)
     mistakes.push_back(wrong_argument(
         query.limb, fmt::format("--limb takes joint letters ({}), as PUU", kJointLetters)));
-  if (query.drives && *query.drives < 0)
-    mistakes.push_back(
-        wrong_argument(std::to_string(*query.drives), "--drives takes a number from 0 on"));
+  if (!query.drives.empty() && !is_whole_number(query.drives))
+    mistakes.push_back(wrong_argument(query.drives, "--drives takes a whole number from 0 on"));
   if (!mistakes.empty()) throw InputError(std::move(mistakes));
 }
 

@@ -19,11 +19,11 @@ struct CatalogRow {
 
 /// What is looked for; what is left out fits every machine.
 struct CatalogQuery {
-  std::string motion;         ///< a pattern "3T1R", or letters of XYZABC
-  std::optional<int> drives;  ///< how many
-  std::string drive_type;     ///< "prismatic" or "revolute": all drives
-  std::string limb;           ///< "PUU"
-  std::string search;         ///< words, all of them in name, title, source, about
+  std::string motion;      ///< a pattern "3T1R", or letters of XYZABC
+  std::string drives;      ///< how many, in digits
+  std::string drive_type;  ///< "prismatic" or "revolute": all drives
+  std::string limb;        ///< "PUU"
+  std::string search;      ///< words, all of them in name, title, source, about
 };
 
 /// Declares --motion, --drives, --drive-type, --limb and --search.

@@ -6,6 +6,7 @@
 #include <ranges>
 #include <regex>
 
+#include "catalog/counted.hpp"
 #include "cli/commands.hpp"
 #include "cli/machines.hpp"
 #include "cli/print.hpp"
@@ -15,23 +16,20 @@
 namespace polyglide {
 namespace {
 
-const char* plural(int count) { return count == 1 ? "" : "s"; }
-
 /// The counts, each with what it means.
 void print_counts(const MobilityReport& report) {
   std::vector<std::vector<std::string>> rows{
       {"  mobility", fmt::format("{}", report.finite),
-       fmt::format("finite; {} at home; Kutzbach {}; {} redundant constraint{}", report.home,
-                   report.kutzbach, report.redundant_constraints,
-                   plural(report.redundant_constraints))},
+       fmt::format("finite; {} at home; Kutzbach {}; {}", report.home, report.kutzbach,
+                   counted(report.redundant_constraints, "redundant constraint"))},
       {"  platform", report.pattern,
-       fmt::format("{} freedom{} ({}); {} at home; {}", report.platform_dof,
-                   plural(report.platform_dof), report.axes.empty() ? "none" : report.axes,
-                   report.platform_home_dof, report.motion)},
+       fmt::format("{} ({}); {} at home; {}", counted(report.platform_dof, "freedom"),
+                   report.axes.empty() ? "none" : report.axes, report.platform_home_dof,
+                   report.motion)},
       {"  drives", fmt::format("{}", report.drives),
-       fmt::format("held, the platform keeps {} freedom{}, {} at home; {} surplus",
-                   report.locked_platform, plural(report.locked_platform),
-                   report.home_locked_platform, report.surplus)},
+       fmt::format("held, the platform keeps {}, {} at home; {} surplus",
+                   counted(report.locked_platform, "freedom"), report.home_locked_platform,
+                   report.surplus)},
       {"  certainty", fmt::format("{:.1e}", report.rank_gap),
        fmt::format("smallest gap of a rank decision; margin to singularity {:.2g}", report.margin)},
   };
@@ -82,8 +80,7 @@ void print_evidence(const MobilityReport& report, const Mechanism& mechanism) {
   items.clear();
   if (report.branches.size() > 1)
     for (const auto& branch : report.branches)
-      items.push_back(fmt::format("{} ({} freedom{})", branch.pattern, branch.dimension,
-                                  plural(branch.dimension)));
+      items.push_back(fmt::format("{} ({})", branch.pattern, counted(branch.dimension, "freedom")));
   print_list("Motion branches that meet at home", items);
   items.clear();
   for (const PlatformMotion& motion : report.platform_motions)

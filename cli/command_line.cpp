@@ -1,5 +1,6 @@
 #include "cli/command_line.hpp"
 
+#include <fmt/format.h>
 #include <tbb/info.h>
 
 #include <charconv>
@@ -33,6 +34,24 @@ std::vector<Diagnostic> unexpected_words(const CLI::App& app) {
   return mistakes;
 }
 
+/// What the parser itself refuses, in our words; it has "--option: …" and "Could not convert:
+/// --option = word".
+Diagnostic refused(const CLI::ParseError& error, const CLI::App& app) {
+  const std::string told = error.what(), help = " (see " + app.get_name() + " --help)";
+  const std::string kUnread = "Could not convert: ";
+  if (const std::size_t equals = told.find(" = ");
+      told.starts_with(kUnread) && equals != std::string::npos)
+    return wrong_argument(
+        told.substr(equals + 3),
+        "no value for " + told.substr(kUnread.size(), equals - kUnread.size()) + help);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+    return wrong_argument("", told.substr(0, told.find(':')) + " takes a value" + help);
+  return wrong_argument("", told + help);
+}
+
+/// Of whole numbers that do not overflow.
+constexpr std::size_t kMostDigits = 18;
+
 }  // namespace
 
 CommandLine::CommandLine(std::string_view name, std::string_view about,
@@ -44,10 +63,10 @@ CommandLine::CommandLine(std::string_view name, std::string_view about,
   app_.set_help_flag("-h,--help", "Print this help and exit");
   app_.add_flag("--json", json_, "Print one JSON document on standard output, nothing else");
   app_.add_option("--threads", threads_, "Use at most N threads; results do not depend on it")
-      ->check(CLI::Range(1, 4096))
+      ->check(whole_number("--threads", 1, 4096))
       ->type_name("N");
   app_.add_option("--seed", seed_, "Seed of everything random (default 1)")
-      ->check(whole_number())
+      ->check(whole_number("--seed"))
       ->type_name("N");
   app_.add_flag("--quiet", quiet_, "No progress and no remarks on standard error");
 }
@@ -61,8 +80,9 @@ bool CommandLine::parse() {
     std::cout << app_.help();
     return false;
   } catch (const CLI::ParseError& error) {
-    mistakes.push_back(
-        wrong_argument("", std::string(error.what()) + " (see " + app_.get_name() + " --help)"));
+    mistakes.push_back(refused(error, app_));
+  } catch (const InputError& error) {  // of validators
+    mistakes = error.diagnostics();
   }
   for (Diagnostic& mistake : unexpected_words(app_)) mistakes.push_back(std::move(mistake));
   if (!mistakes.empty()) throw InputError(std::move(mistakes));
@@ -80,15 +100,46 @@ Diagnostic wrong_argument(const std::string& word, std::string rule, const std::
           .hint = nearest.empty() ? "" : "did you mean " + nearest + "?"};
 }
 
-CLI::Validator whole_number() {
-  return CLI::Validator(
-      [](const std::string& word) {
-        const bool digits =
-            !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
-        return digits && word.size() <= 18 ? std::string()
-                                           : "\"" + word + "\" is no whole number from 0 on";
-      },
-      "");
+CLI::Validator taking(const std::string& option, const std::string& kind,
+                      const std::function<bool(const std::string&)>& fits) {
+  return {[=](const std::string& word) {
+            if (!fits(word)) throw InputError({wrong_argument(word, option + " takes " + kind)});
+            return std::string();
+          },
+          ""};
+}
+
+bool is_whole_number(const std::string& word) {
+  return !word.empty() && word.size() <= kMostDigits &&
+         word.find_first_not_of("0123456789") == std::string::npos;
+}
+
+CLI::Validator whole_number(const std::string& option, std::uint64_t least, std::uint64_t most) {
+  const std::string kind = most == kNoBound
+                               ? fmt::format("a whole number from {} on", least)
+                               : fmt::format("a whole number from {} to {}", least, most);
+  return taking(option, kind, [=](const std::string& word) {
+    return is_whole_number(word) && std::stoull(word) >= least && std::stoull(word) <= most;
+  });
+}
+
+CLI::Validator number_between(const std::string& option, double least, double most) {
+  return taking(option, fmt::format("a number from {:g} to {:g}", least, most),
+                [=](const std::string& word) {
+                  double value = 0;
+                  return CLI::detail::lexical_cast(word, value) && value >= least && value <= most;
+                })
+      .description(fmt::format("{:g} to {:g}", least, most));
+}
+
+CLI::Validator positive_number(const std::string& option) {
+  return taking(option, "a positive number",
+                [](const std::string& word) {
+                  double value = 0;
+                  return CLI::detail::lexical_cast(word, value) && value > 0 &&
+                         std::isfinite(value);
+                })
+      .description("positive");
 }
 
 std::vector<double> parse_numbers(std::string_view text, std::string_view option) {

@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -53,9 +55,19 @@ class CommandLine {
 [[nodiscard]] Diagnostic wrong_argument(const std::string& word, std::string rule,
                                         const std::string& nearest = "");
 
-/// Accepts whole numbers from 0 on, of 18 digits at most; CLI11's own check shows a range of
-/// doubles.
-[[nodiscard]] CLI::Validator whole_number();
+/// A check of an option's words, whose mistake reads: "x" — --seed takes a whole number from 0 on.
+/// @param kind what follows "takes".
+[[nodiscard]] CLI::Validator taking(const std::string& option, const std::string& kind,
+                                    const std::function<bool(const std::string&)>& fits);
+
+inline constexpr std::uint64_t kNoBound = std::numeric_limits<std::uint64_t>::max();
+
+/// Of 18 digits at most.
+[[nodiscard]] bool is_whole_number(const std::string& word);
+[[nodiscard]] CLI::Validator whole_number(const std::string& option, std::uint64_t least = 0,
+                                          std::uint64_t most = kNoBound);
+[[nodiscard]] CLI::Validator number_between(const std::string& option, double least, double most);
+[[nodiscard]] CLI::Validator positive_number(const std::string& option);
 
 /// Numbers separated by commas, as in `--ik 10,0,-5`.
 /// @param option what they were given to, for messages.

@@ -33,7 +33,8 @@ Json design_json(const Json& run, const std::string& report) {
 void print_ranking(const Json& run) {
   std::vector<std::vector<std::string>> rows{{"rank", "layout", "score", "workspace", "mean 1/κ",
                                               "worst 1/κ", "covered", "twins", "choices"}};
-  for (const Json& entry : run.contains("nearest") ? run.at("nearest") : run.at("ranking")) {
+  const Json& entries = run.at(run.contains("nearest") ? "nearest" : "ranking");
+  for (const Json& entry : entries) {
     if (rows.size() > kShownRows) break;
     const Json& values = entry.at("objectives");
     const Json& known = entry.at("known_as");
@@ -46,6 +47,8 @@ void print_ranking(const Json& run) {
                     std::to_string(entry.at("twins").size()), entry.at("title")});
   }
   std::cout << columns(rows);
+  if (entries.size() > kShownRows)
+    std::cout << fmt::format("{} more in the report\n", entries.size() - kShownRows);
 }
 
 void print_design(const Json& run, const std::string& report) {

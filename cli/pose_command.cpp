@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "catalog/counted.hpp"
 #include "cli/commands.hpp"
 #include "cli/machines.hpp"
 #include "cli/pose_indices.hpp"
@@ -129,8 +130,8 @@ ordered_json completeness_json(const Completeness& completeness) {
 /// @param indices of every solution, for people.
 void print_modes(const Machine& machine, const AssemblyModes& modes,
                  const std::vector<std::string>& indices, bool all) {
-  std::cout << fmt::format("{}: {} assembly mode(s) found\n", machine.model.mechanism.name,
-                           modes.solutions.size());
+  std::cout << fmt::format("{}: {} found\n", machine.model.mechanism.name,
+                           counted(modes.solutions.size(), "assembly mode"));
   for (std::size_t i = 0; i < modes.solutions.size(); ++i) {
     const ForwardSolution& solution = modes.solutions[i];
     std::string notes;

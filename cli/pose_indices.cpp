@@ -12,16 +12,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-CLI::Validator positive_number() {
-  return {[](const std::string& text) {
-            double value = 0;
-            return CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value)
-                       ? std::string()
-                       : fmt::format("\"{}\" is no positive number", text);
-          },
-          "positive"};
-}
-
 ordered_json matrix_json(const Eigen::MatrixXd& matrix) {
   ordered_json rows = ordered_json::array();
   for (const auto& row : matrix.rowwise())
@@ -40,13 +30,13 @@ void add_stiffness_options(CLI::App& app, StiffnessOptions& options) {
   app.add_option("--drive-stiffness", options.drives,
                  "N/m (N m/rad where it turns) of every drive, or one number for all")
       ->delimiter(',')
-      ->check(positive_number());
+      ->check(positive_number("--drive-stiffness"));
   app.add_option("--rod-stiffness", options.rods,
                  "N/m of all rods of a drive together, in series with it")
-      ->check(positive_number());
+      ->check(positive_number("--rod-stiffness"));
   app.add_option("--characteristic-length", options.characteristic_length,
                  "Length that makes rotations comparable (file units)")
-      ->check(positive_number());
+      ->check(positive_number("--characteristic-length"));
 }
 
 Springs springs_of(const StiffnessOptions& options, const Machine& machine) {

@@ -202,18 +202,6 @@ ordered_json measure(const ChosenMachine& chosen, const Asked& asked, CommandLin
   return document;
 }
 
-/// CLI::Range lets through what is no number.
-CLI::Validator between(double least, double most) {
-  return CLI::Validator(
-      [=](const std::string& text) {
-        double value = 0;
-        return CLI::detail::lexical_cast(text, value) && value >= least && value <= most
-                   ? std::string()
-                   : fmt::format("\"{}\" is no number from {:g} to {:g}", text, least, most);
-      },
-      fmt::format("{:g} to {:g}", least, most));
-}
-
 }  // namespace
 
 int run_workspace(CommandLine& line) {
@@ -230,17 +218,17 @@ int run_workspace(CommandLine& line) {
   auto* turned = app.add_option("--turned", asked.turned,
                                 "Orientation a,b,c of the platform (default: as at home)");
   app.add_option("--accuracy", asked.how.accuracy, "Relative accuracy of the volume")
-      ->check(between(1e-12, 0.1));
+      ->check(number_between("--accuracy", 1e-12, 0.1));
   auto* total =
       app.add_option("--total-orientation,--dexterous", asked.total,
                      "Only places where every tilt up to this angle, in every direction that the "
                      "machine commands, can be had (file units)")
-          ->check(between(0, 360))
+          ->check(number_between("--total-orientation", 0, 360))
           ->excludes(turned);
   app.add_option("--torsion", asked.torsion,
                  "With --total-orientation: and every torsion up to this angle either way")
       ->needs(total)
-      ->check(between(0, 360));
+      ->check(number_between("--torsion", 0, 360));
   auto* at = app.add_option("--orientations-at", asked.orientations_at,
                             "Instead: the rotations that can be had with the tool at x,y,z")
                  ->excludes(total);
@@ -257,10 +245,10 @@ int run_workspace(CommandLine& line) {
   app.add_option("--tilt", asked.tilt,
                  "With --certify: tilt to either side about every commanded rotation (file units)")
       ->needs(certify_flag)
-      ->check(between(0, 360));
+      ->check(number_between("--tilt", 0, 360));
   app.add_option("--condition", asked.condition, "With --certify: largest condition number allowed")
       ->needs(certify_flag)
-      ->check(between(1, 1e12));
+      ->check(number_between("--condition", 1, 1e12));
   if (!line.parse()) return kDone;
   if (asked.certify && asked.box.empty())
     throw InputError({wrong_argument("", "--certify needs --box DX,DY,DZ[@X,Y,Z]")});

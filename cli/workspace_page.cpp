@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "catalog/counted.hpp"
 #include "cli/print.hpp"
 #include "kinematics/solve.hpp"
 
@@ -198,16 +199,21 @@ void print_page(const OrientationWorkspace& workspace, const Vector3& at, const 
 
 void print_page(const SingularityMap& map, const std::string& name) {
   constexpr const char* kNames = "XYZABC";
+  constexpr std::size_t kShort =
+      5;  // pieces of a curve that the end of reach cuts off, and the like
   const auto text = [&](int k, double value) {
     return map.axes[k] < 3 ? in_mm(value) : in_degrees(value);
   };
-  std::cout << fmt::format("{}: singularities over {}{}, {} {} to {}, {} {} to {}\n", name,
-                           kNames[map.axes[0]], kNames[map.axes[1]], kNames[map.axes[0]],
-                           text(0, map.u.front()), text(0, map.u.back()), kNames[map.axes[1]],
-                           text(1, map.v.front()), text(1, map.v.back()));
-  std::map<std::string, int> kinds;
+  std::cout << fmt::format("{}: singularities over {}; {} {} to {}, {} {} to {}\n", name,
+                           slice_words(map), kNames[map.axes[0]], text(0, map.u.front()),
+                           text(0, map.u.back()), kNames[map.axes[1]], text(1, map.v.front()),
+                           text(1, map.v.back()));
+  std::map<std::string, int> short_ones;
   for (const SingularCurve& curve : map.curves) {
-    ++kinds[curve.kind];
+    if (curve.points.size() < kShort) {
+      ++short_ones[curve.kind];
+      continue;
+    }
     const auto& middle = curve.points[curve.points.size() / 2];
     std::cout << fmt::format("  {}: {} curve of {} points through ({}, {})\n", curve.kind,
                              curve.closed ? "closed" : "open", curve.points.size(),
@@ -218,6 +224,9 @@ void print_page(const SingularityMap& map, const std::string& name) {
       std::cout << "    it bears without any drive, and cannot give way to: " << screw.about
                 << "\n";
   }
+  for (const auto& [kind, count] : short_ones)
+    std::cout << fmt::format("  {}: {} of fewer than {} points\n", kind, counted(count, "piece"),
+                             kShort);
   if (map.curves.empty()) std::cout << "  no singular curve in this slice\n";
   if (map.branch_changes > 0)
     std::cout << fmt::format("  {} changes of sign where the solver goes over to another branch\n",

@@ -67,7 +67,8 @@ endfunction()
 #
 # Flags of <floor>/<stem>_<instruction set>.cpp, of which the program chooses one at run
 # time. The wide ones may contract a·b + c: their results differ from the scalar ones by
-# rounding. No precompiled header: it holds for one set of flags only.
+# rounding. No precompiled header: it holds for one set of flags only. The sanitizers see
+# the scalar one, which is the same source: of registers the compiler would make minutes.
 function(polyglide_add_kernels floor stem)
   set(flags_scalar -O3)
   set(flags_x86_64 -O3)
@@ -78,6 +79,9 @@ function(polyglide_add_kernels floor stem)
   foreach(kind IN ITEMS scalar x86_64 v3 v4)
     set(source ${PROJECT_SOURCE_DIR}/${floor}/${stem}_${kind}.cpp)
     set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    if(POLYGLIDE_SANITIZE AND NOT kind STREQUAL scalar)
+      list(APPEND flags_${kind} -fno-sanitize=all)
+    endif()
     if(kind STREQUAL scalar OR CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
       set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "${flags_${kind}}")
     endif()

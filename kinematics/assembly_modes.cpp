@@ -9,6 +9,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "catalog/counted.hpp"
 #include "kinematics/distance_newton.hpp"
 #include "kinematics/krawczyk.hpp"
 #include "kinematics/manifold.hpp"
@@ -259,8 +260,9 @@ void certify(ForwardSolution& mode, const ModeCertificate& certificate) {
 void check_drives(const Machine& machine, const Eigen::VectorXd& drives) {
   const auto count = static_cast<Eigen::Index>(machine.model.drives.size());
   if (drives.size() != count)
-    throw std::invalid_argument(
-        fmt::format("{} drive positions given, the machine has {} drives", drives.size(), count));
+    throw std::invalid_argument(fmt::format("{} given, the machine has {}",
+                                            counted(drives.size(), "drive position"),
+                                            counted(count, "drive")));
   if (!drives.allFinite()) throw std::invalid_argument("a drive position is not a finite number");
 }
 

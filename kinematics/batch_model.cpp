@@ -141,13 +141,11 @@ void BatchModel::add_cone(const Machine& machine, const Leg& leg, int joint, boo
                           const std::vector<std::string>& ignored) {
   const Joint& data = machine.model.mechanism.joints[joint];
   if (!data.cone || is_ignored("cone " + data.name, ignored)) return;
-  // The file may give the axis either way; it is meant along the rod.
-  const bool along = data.cone_axis.dot(leg.platform_point - leg.base_point) >= 0;
   ConeData cone;
   cone.on = on_platform                        ? ConeData::On::platform
             : leg.kind == Leg::Kind::crank_rod ? ConeData::On::crank
                                                : ConeData::On::base;
-  put(cone.axis, along ? data.cone_axis : Vector3(-data.cone_axis));
+  put(cone.axis, axis_along_rod(data, leg));
   cone.cosine = std::cos(std::min(M_PI, *data.cone + kLimitSlack));
   cone.limit = add_name("cone " + data.name);
   all_.cones.push_back(cone);

@@ -42,35 +42,24 @@ void LegBounds::add_row(const Machine& machine, int index,
     const Joint& joint =
         mechanism.joints[on_platform ? row.leg.platform_joint : row.leg.base_joint];
     if (!joint.cone || is_ignored("cone " + joint.name, ignored)) continue;
-    const bool along = joint.cone_axis.dot(row.leg.platform_point - row.leg.base_point) >= 0;
-    row.cones.push_back({add("cone " + joint.name), on_platform,
-                         along ? joint.cone_axis : Vector3(-joint.cone_axis),
+    row.cones.push_back({add("cone " + joint.name), on_platform, axis_along_rod(joint, row.leg),
                          cosine(Interval(std::min(M_PI, *joint.cone + kSlack)))});
   }
   rows_.push_back(std::move(row));
 }
 
 void LegBounds::add_planes(const Machine& machine, const std::vector<std::string>& ignored) {
-  const Mechanism& mechanism = machine.model.mechanism;
-  for (const HalfSpaceLimit& limit : mechanism.limits) {
-    if (is_ignored(limit.name, ignored)) continue;
-    const int leg = carriage_leg(mechanism, *machine.legs, limit.body);
-    for (const HalfSpaceLimit::Plane& plane : limit.planes)
-      for (const Vector3& point : limit.points) {
-        Plane check{add(limit.name),
-                    plane.normal,
-                    Interval(plane.offset) + kSlack,
-                    limit.body == mechanism.platform,
-                    Vector3(point - tool_),
-                    -1,
-                    Interval(0.0)};
-        check.offset -= check.on_platform ? dot(plane.normal, tool_) : dot(plane.normal, point);
-        if (leg >= 0) {
-          check.drive = machine.legs->legs[leg].drive;
-          check.slope = dot(plane.normal, machine.legs->legs[leg].direction);
-        }
-        planes_.push_back(check);
-      }
+  for (const auto& [limit, plane, point, on_platform, carriage] :
+       watched_points(machine.model.mechanism, *machine.legs, ignored)) {
+    Plane check{add(limit.name), plane.normal,           Interval(plane.offset) + kSlack,
+                on_platform,     Vector3(point - tool_), -1,
+                Interval(0.0)};
+    check.offset -= dot(plane.normal, on_platform ? tool_ : point);
+    if (carriage != nullptr) {
+      check.drive = carriage->drive;
+      check.slope = dot(plane.normal, carriage->direction);
+    }
+    planes_.push_back(check);
   }
 }
 
@@ -90,9 +79,7 @@ std::optional<LegBounds> LegBounds::make(const Machine& machine,
     // A second rod of a carriage must be the parallel of the first, turned by whatever the machine
     // can turn, else what both ask of the carriage is an equation.
     const Vector3 beside = leg.platform_point - first.platform_point;
-    const Vector3 apart = fixed * beside - (leg.base_point - first.base_point);
-    bool same = leg.kind == first.kind && std::abs(leg.length - first.length) < 1e-9 &&
-                leg.side == first.side && apart.norm() < 1e-9;
+    bool same = is_parallel(leg, first, fixed);
     for (int axis : machine.task.axes)
       same = same && (!turning || axis < 3 ||
                       beside.cross(Vector3::Unit(axis - 3)).norm() < 1e-9 * beside.norm());

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kinematics/leg_places.hpp"
+#include "kinematics/limits.hpp"
 #include "kinematics/planar.hpp"
 
 namespace polyglide {
@@ -190,6 +191,33 @@ int carriage_leg(const Mechanism& mechanism, const LegMachine& machine, int body
     if (body != rod_end && (bodies[0] == body || bodies[1] == body)) return i;
   }
   return -1;
+}
+
+Vector3 axis_along_rod(const Joint& joint, const Leg& leg) {
+  const bool along = joint.cone_axis.dot(leg.platform_point - leg.base_point) >= 0;
+  return along ? joint.cone_axis : Vector3(-joint.cone_axis);
+}
+
+bool is_parallel(const Leg& leg, const Leg& first, const Eigen::Quaterniond& rotation) {
+  constexpr double kSame = 1e-9;  // [m]
+  const Vector3 apart =
+      rotation * (leg.platform_point - first.platform_point) - (leg.base_point - first.base_point);
+  return leg.kind == first.kind && std::abs(leg.length - first.length) < kSame &&
+         leg.side == first.side && apart.norm() < kSame;
+}
+
+std::vector<WatchedPoint> watched_points(const Mechanism& mechanism, const LegMachine& machine,
+                                         const std::vector<std::string>& ignored) {
+  std::vector<WatchedPoint> points;
+  for (const HalfSpaceLimit& limit : mechanism.limits) {
+    if (is_ignored(limit.name, ignored)) continue;
+    const int leg = carriage_leg(mechanism, machine, limit.body);
+    for (const HalfSpaceLimit::Plane& plane : limit.planes)
+      for (const Vector3& point : limit.points)
+        points.push_back({limit, plane, point, limit.body == mechanism.platform,
+                          leg < 0 ? nullptr : &machine.legs[leg]});
+  }
+  return points;
 }
 
 int leg_body(const Mechanism& mechanism, const Leg& leg) {

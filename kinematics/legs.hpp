@@ -43,6 +43,29 @@ struct LegMachine {
 /// Index of a leg whose carriage is `body`, -1 when it is none's.
 [[nodiscard]] int carriage_leg(const Mechanism& mechanism, const LegMachine& machine, int body);
 
+/// The axis of a joint's cone, pointed along the rod: the file may give it either way.
+[[nodiscard]] Vector3 axis_along_rod(const Joint& joint, const Leg& leg);
+
+/// Whether a leg asks the same of their carriage as `first` wherever the platform is at
+/// `rotation` (displacement from home): their rods are parallels. If not, what both ask is an
+/// equation.
+[[nodiscard]] bool is_parallel(const Leg& leg, const Leg& first,
+                               const Eigen::Quaterniond& rotation);
+
+/// A point that a half-space limit keeps on one side of a plane. Refers to the mechanism.
+struct WatchedPoint {
+  const HalfSpaceLimit& limit;
+  const HalfSpaceLimit::Plane& plane;
+  const Vector3& point;
+  bool on_platform;
+  const Leg* carriage;  ///< a leg whose carriage it is on; null on platform and base
+};
+
+/// All that are not ignored, in the order of the file.
+[[nodiscard]] std::vector<WatchedPoint> watched_points(const Mechanism& mechanism,
+                                                       const LegMachine& machine,
+                                                       const std::vector<std::string>& ignored);
+
 /// The body at the platform end of a leg: the rod, or the strut's upper part.
 [[nodiscard]] int leg_body(const Mechanism& mechanism, const Leg& leg);
 

@@ -55,6 +55,8 @@ class LineLimits {
   static constexpr int kSingular = 0;
 
  private:
+  static constexpr double kTouch = 1e-12;  // of the machine's size: ends nearer than this are one
+
   struct Cone {
     int limit;
     Vector3 axis;

@@ -58,11 +58,10 @@ bool is_point(const Joint& joint) {
 /// Decides which bodies a page must move and draws the rest between them.
 class SceneWriter {
  public:
-  SceneWriter(const Machine& machine, int nodes)
+  explicit SceneWriter(const Machine& machine)
       : machine_(machine),
         model_(machine.model),
         mechanism_(machine.model.mechanism),
-        nodes_(nodes),
         joints_of_(mechanism_.bodies.size()),
         shown_(mechanism_.bodies.size(), -1),
         drawn_(mechanism_.bodies.size(), false) {
@@ -70,16 +69,18 @@ class SceneWriter {
       for (int body : mechanism_.joints[j].bodies) joints_of_[body].push_back(j);
   }
 
-  Json write() {
+  Json picture() {
     choose_bodies();
-    Json scene;
-    scene["bodies"] = bodies_;
     draw();
-    scene["segments"] = segments_;
+    return {{"bodies", bodies_}, {"segments", segments_}};
+  }
+
+  Json scene(int nodes) {
+    Json scene = picture();
     scene["joints"] = joints();
     scene["tool"] = drawn_point(mechanism_.tool);
     scene["platform"] = shown_[mechanism_.platform];
-    add_table(scene);
+    add_table(scene, nodes);
     return scene;
   }
 
@@ -267,8 +268,8 @@ class SceneWriter {
     return list;
   }
 
-  void add_table(Json& scene) const {
-    const PoseTable table = tabulate_poses(machine_, nodes_);
+  void add_table(Json& scene, int nodes) const {
+    const PoseTable table = tabulate_poses(machine_, nodes);
     scene["drives"] = Json::array();
     for (std::size_t d = 0; d < model_.drives.size(); ++d) {
       const Freedom& freedom = model_.freedoms[model_.drives[d]];
@@ -293,7 +294,6 @@ class SceneWriter {
   const Machine& machine_;
   const Model& model_;
   const Mechanism& mechanism_;
-  int nodes_;
   std::vector<std::vector<int>> joints_of_;
   std::vector<int> shown_;   // index in `bodies` of the scene, -1 = not there
   std::vector<bool> drawn_;  // as a segment between shown bodies
@@ -305,8 +305,10 @@ class SceneWriter {
 
 nlohmann::ordered_json scene_of(const Machine& machine, int nodes) {
   if (nodes < 1) throw std::invalid_argument("scene_of: nodes must be at least 1");
-  return SceneWriter(machine, nodes).write();
+  return SceneWriter(machine).scene(nodes);
 }
+
+nlohmann::ordered_json picture_of(const Machine& machine) { return SceneWriter(machine).picture(); }
 
 void add_mode(nlohmann::ordered_json& scene, const FreedomMode& mode, const Mechanism& mechanism) {
   Json frames = Json::array();

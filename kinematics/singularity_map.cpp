@@ -324,49 +324,4 @@ SingularityMap singularity_map(const Machine& machine, const SingularityMapOptio
   return map;
 }
 
-nlohmann::ordered_json to_json(const SingularityMap& map) {
-  using Json = nlohmann::ordered_json;
-  constexpr const char* kNames[] = {"X", "Y", "Z", "A", "B", "C"};
-  const auto rows = [&](const auto& cell) {
-    Json table = Json::array();
-    for (std::size_t j = 0; j < map.v.size(); ++j) {
-      Json row = Json::array();
-      for (std::size_t i = 0; i < map.u.size(); ++i) row.push_back(cell(j * map.u.size() + i));
-      table.push_back(std::move(row));
-    }
-    return table;
-  };
-  const auto words = [](const std::vector<SingularScrew>& screws) {
-    Json list = Json::array();
-    for (const SingularScrew& screw : screws) list.push_back(screw.about);
-    return list;
-  };
-  Json json;
-  json["axes"] = {kNames[map.axes[0]], kNames[map.axes[1]]};
-  json["at"] = std::vector<double>(map.at.begin(), map.at.end());
-  json["square"] = map.square;
-  json["curves"] = Json::array();
-  for (const SingularCurve& curve : map.curves)
-    json["curves"].push_back({{"kind", curve.kind},
-                              {"closed", curve.closed},
-                              {"gained", words(curve.gained)},
-                              {"lost", words(curve.lost)},
-                              {"points", curve.points}});
-  json["cell"] = map.cell;
-  json["branch_changes"] = map.branch_changes;
-  json["singular_nodes"] = map.singular_nodes;
-  json["u"] = map.u;
-  json["v"] = map.v;
-  json["inverse_condition"] = rows([&](std::size_t i) {
-    const double value = map.inverse_condition[i];
-    return std::isnan(value) ? Json() : Json(std::round(value * 1e4) / 1e4);
-  });
-  json["side"] = rows([&](std::size_t i) { return Json(static_cast<int>(map.side[i])); });
-  json["limit"] = rows([&](std::size_t i) { return Json(map.limit[i]); });
-  json["limits"] = map.limits;
-  json["poses"] = map.poses;
-  json["seconds"] = map.seconds;
-  return json;
-}
-
 }  // namespace polyglide

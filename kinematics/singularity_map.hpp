@@ -62,6 +62,9 @@ struct SingularityMap {
 [[nodiscard]] SingularityMap singularity_map(const Machine& machine,
                                              const SingularityMapOptions& options);
 
+/// Which slice it is, for people: "AB at Z 50 mm", "XY through home".
+[[nodiscard]] std::string slice_words(const SingularityMap& map);
+
 /// The `workspace --singularity-map --json` document.
 [[nodiscard]] nlohmann::ordered_json to_json(const SingularityMap& map);
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "catalog/counted.hpp"
 #include "kinematics/rank.hpp"
 
 namespace polyglide {
@@ -20,8 +21,10 @@ bool is_positive(double value) { return value > 0 && std::isfinite(value); }
 void check_springs(const Machine& machine, const Springs& springs) {
   const std::size_t drives = machine.model.drives.size();
   if (springs.drives.size() != 1 && springs.drives.size() != drives)
-    throw std::invalid_argument(fmt::format("{} drive stiffnesses given, the machine has {} drives",
-                                            springs.drives.size(), drives));
+    throw std::invalid_argument(
+        fmt::format("{} given, the machine has {}",
+                    counted(springs.drives.size(), "drive stiffness", "drive stiffnesses"),
+                    counted(drives, "drive")));
   if (!std::ranges::all_of(springs.drives, is_positive))
     throw std::invalid_argument("a drive stiffness must be a positive number");
   if (springs.characteristic_length && !is_positive(*springs.characteristic_length))

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "catalog/counted.hpp"
+#include "kinematics/scene.hpp"
 #include "optimizer/duel.hpp"
 #include "optimizer/parallel.hpp"
 #include "optimizer/requirements.hpp"
@@ -49,12 +51,11 @@ Json all_measures_json(const Family& family) {
 Json requirement_rows(const DesignFindings& findings) {
   const std::string moves = findings.families.empty() ? "not met" : "met";
   Json rows = Json::array();
-  rows.push_back(
-      {{"name", "motion"},
-       {"asked", motion_text(findings.brief)},
-       {"verdict", moves},
-       {"note", fmt::format("{} families of layouts with this motion and a determinate verdict",
-                            findings.families.size())}});
+  rows.push_back({{"name", "motion"},
+                  {"asked", motion_text(findings.brief)},
+                  {"verdict", moves},
+                  {"note", counted(findings.families.size(), "family", "families") +
+                               " of layouts with this motion and a determinate verdict"}});
   rows.push_back({{"name", "drives"},
                   {"asked", std::to_string(findings.brief.drives)},
                   {"verdict", moves},
@@ -148,6 +149,17 @@ Json pages_json(const DesignFindings& findings, const std::vector<const Family*>
   return Json(std::move(pages));
 }
 
+/// Adds what the table of ranks needs for a picture of the layouts that are not shown in full.
+void add_pictures(const DesignFindings& findings, const std::vector<const Family*>& full,
+                  Json& ranking) {
+  for (std::size_t i = 0; i < ranking.size(); ++i) {
+    const Family& family = *findings.satisfying[i];
+    if (std::ranges::find(full, &family) != full.end()) continue;
+    ranking[i]["scene"] = picture_of(machine_for(expand(family.layout, family.tuned->best.values),
+                                                 family.task, findings.brief.requirements.zone));
+  }
+}
+
 /// Adds the duel, and its sides to the layouts shown in full.
 void add_duel(const DesignFindings& findings, Json& run, std::vector<const Family*>& full) {
   if (!findings.brief.duel) return;
@@ -195,6 +207,7 @@ Json design_document(const DesignFindings& findings) {
   }
   full.resize(std::min(full.size(), static_cast<std::size_t>(brief.report_layouts)));
   add_duel(findings, run, full);
+  add_pictures(findings, full, run["ranking"]);
   run["layouts"] = pages_json(findings, full);
   run["rejected"] = findings.rejections.json(findings.space, findings.options);
   return run;

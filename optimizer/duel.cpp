@@ -72,7 +72,7 @@ std::string statement(const Side& winner, const Side& loser) {
   for (const Index& index : indices()) {
     const double a = best.measures[index.key], b = other.measures[index.key];
     if (a == b || b == 0) continue;
-    const std::string item = fmt::format("{} {:+.1f} %", index.key, 100 * (a / b - 1));
+    const std::string item = fmt::format("{} {:+.1f} %", lowered(index.label), 100 * (a / b - 1));
     ((a > b) == index.higher ? better : worse).push_back(item);
   }
   return text +

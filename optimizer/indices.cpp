@@ -1,6 +1,7 @@
 #include "optimizer/indices.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 
@@ -156,6 +157,17 @@ std::vector<std::string> objective_words() {
   for (const Index& index : indices())
     if (index.weighable) words.push_back(index.key);
   return words;
+}
+
+std::string label_of(const std::string& key) {
+  const auto index = std::ranges::find(indices(), key, &Index::key);
+  return index == indices().end() ? key : index->label;
+}
+
+std::string lowered(std::string label) {
+  if (!label.empty())
+    label[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(label[0])));
+  return label;
 }
 
 nlohmann::ordered_json indices_json() {

@@ -38,6 +38,12 @@ struct Index {
 /// The `indices` list of a stored run (docs/run-format.md).
 [[nodiscard]] nlohmann::ordered_json indices_json();
 
+/// What an index is called on pages; a key that is none's as it is.
+[[nodiscard]] std::string label_of(const std::string& key);
+
+/// A label as it reads within a sentence: with a small first letter.
+[[nodiscard]] std::string lowered(std::string label);
+
 /// What is asked of a design.
 struct Requirements {
   Zone zone;

@@ -20,16 +20,6 @@ std::map<std::string, double> shares(const Weights& weights) {
   return result;
 }
 
-std::string label_of(const std::string& key) {
-  const auto index = std::ranges::find(indices(), key, &Index::key);
-  return index == indices().end() ? key : index->label;
-}
-
-std::string lowered(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
-  return text;
-}
-
 /// Weights with one key replaced; empty when it is not among them, or the other one is.
 Weights exchanged(Weights weights, const std::string& from, const std::string& to) {
   const auto has = [&](const std::string& key) {

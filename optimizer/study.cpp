@@ -132,8 +132,8 @@ std::string finding(const TuneProblem& problem, const Tuned& tuned) {
                                "objective of {:.3g}",
                                to.score);
   for (const auto& [key, weight] : problem.requirements.objectives)
-    text += fmt::format(", {} {:.3g} → {:.3g} ({})", key, from.measures[key], to.measures[key],
-                        change_text(from.measures[key], to.measures[key]));
+    text += fmt::format(", {} {:.3g} → {:.3g} ({})", lowered(label_of(key)), from.measures[key],
+                        to.measures[key], change_text(from.measures[key], to.measures[key]));
   text += fmt::format(
       "; usable workspace {:.4g} → {:.4g} dm³, worst conditioning in the zone {:.3g} → {:.3g}. ",
       from.measures.volume * 1e3, to.measures.volume * 1e3, from.measures.worst_conditioning,

@@ -221,8 +221,7 @@ std::string map_svg(const Json& map) {
       width, height, kStyle);
   const std::string name = map.contains("name") ? map["name"].get<std::string>() : "";
   out += fmt::format("<text class=\"t\" x=\"{:.0f}\" y=\"28\">{}</text>\n", kLeft,
-                     escape(name + ": singularities over " + map["axes"][0].get<std::string>() +
-                            map["axes"][1].get<std::string>()));
+                     escape(name + ": singularities over " + map["slice"].get<std::string>()));
   return out + cells(map, u, v) + curves(map, u, v) + axes(u, v) + legend(map, kLeft + wide + 30) +
          "</svg>\n";
 }

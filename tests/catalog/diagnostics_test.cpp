@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "catalog/counted.hpp"
+
 namespace polyglide {
 namespace {
 
@@ -20,6 +22,14 @@ TEST(Diagnostics, AreAllInTheMessageOfAnInputError) {
   const InputError error({{"f", "/a", "1", "first", ""}, {"f", "/b", "2", "second", ""}});
   EXPECT_STREQ(error.what(), "f:/a: 1 — first\nf:/b: 2 — second");
   EXPECT_EQ(error.diagnostics().size(), 2u);
+}
+
+TEST(Counted, TakesTheSingularForOneOnly) {
+  EXPECT_EQ(counted(0, "freedom"), "0 freedoms");
+  EXPECT_EQ(counted(1, "freedom"), "1 freedom");
+  EXPECT_EQ(counted(std::size_t{6}, "freedom"), "6 freedoms");
+  EXPECT_EQ(counted(1, "family", "families"), "1 family");
+  EXPECT_EQ(counted(20, "family", "families"), "20 families");
 }
 
 TEST(NearestWord, ForgivesALetterLeftOutReplacedOrSwapped) {

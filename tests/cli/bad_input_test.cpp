@@ -49,12 +49,17 @@ TEST(BadInput, IsRefusedWithItsRuleWhateverTheMachine) {
       {for_all("pose", {}), "pose needs --ik x,y,z[,a,b,c] or --fk q1,q2"},
       {for_all("workspace", {"--certify"}), "--certify needs --box"},
       {for_all("workspace", {"--box", "0,1,1"}), "--box takes 3 positive lengths"},
-      {for_all("workspace", {"--accuracy", "1e-20"}), "is no number from 1e-12 to 0.1"},
+      {for_all("workspace", {"--accuracy", "1e-20"}),
+       "\"1e-20\" — --accuracy takes a number from 1e-12 to 0.1"},
       {for_all("check", {"--set", "no-such=1"}), "has no parameter of this name"},
       {for_all("check", {"--set", "a=nan"}), "--set takes one finite number"},
-      {for_all("check", {"--seed", "-3"}), "\"-3\" is no whole number"},
+      {for_all("check", {"--seed", "-3"}), "\"-3\" — --seed takes a whole number from 0 on"},
+      {for_all("check", {"--threads", "0"}),
+       "\"0\" — --threads takes a whole number from 1 to 4096"},
+      {for_all("check", {"--threads"}), "--threads takes a value"},
       {for_all("export", {"--as", "step"}), "--as takes one of: mechanism, mjcf, urdf"},
-      {{"catalog", "--drives", "x"}, "--drives = x"},
+      {{"catalog", "--drives", "x"}, "\"x\" — --drives takes a whole number from 0 on"},
+      {{"catalog", "--json=x"}, "\"x\" — no value for --json"},
       {{"check", "delta-1", "--set", "no-such=1"}, "; it has "},
   };
   for (const auto& [words, message] : table) expect_refused(words, message);
@@ -88,7 +93,7 @@ TEST(BadInput, DrivesBeyondTheirStrokeAreSaidToBe) {
   const ProgramResult page = run_polyglide({"pose", "delta-1", "--fk", "500,0,0"});
   EXPECT_EQ(page.status, 0);
   EXPECT_TRUE(has(page.out, "beyond stroke leg1.guide max")) << page.out;
-  EXPECT_TRUE(has(page.out, "0 assembly mode(s)")) << page.out;  // it would have to turn
+  EXPECT_TRUE(has(page.out, "0 assembly modes")) << page.out;  // it would have to turn
   const json within =
       json::parse(run_polyglide({"pose", "delta-1", "--fk", "5,0,0", "--json"}).out);
   EXPECT_TRUE(within.at("limit").is_null());

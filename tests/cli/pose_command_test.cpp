@@ -61,15 +61,15 @@ TEST(PoseCommand, ASingularPoseHasNoConditionNumber) {
 
 TEST(PoseCommand, RefusesSpringsThatDoNotFit) {
   expect_pose_refused({"pose", "delta-1", "--ik", "0,0,0", "--drive-stiffness", "nan"},
-                      "no positive number");
+                      "--drive-stiffness takes a positive number");
   expect_pose_refused({"pose", "delta-1", "--ik", "0,0,0", "--drive-stiffness", "1,2"},
                       "delta-1 has 3");
   expect_pose_refused({"pose", "delta-1", "--ik", "0,0,0", "--rod-stiffness", "-1"},
-                      "no positive number");
+                      "--rod-stiffness takes a positive number");
   expect_pose_refused({"pose", "3-rps", "--ik", "0,0,0", "--rod-stiffness", "1e7"},
                       "--rod-stiffness is for machines whose legs");
   expect_pose_refused({"pose", "delta-1", "--ik", "0,0,0", "--characteristic-length", "0"},
-                      "no positive number");
+                      "--characteristic-length takes a positive number");
 }
 
 }  // namespace

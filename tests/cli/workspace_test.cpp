@@ -42,6 +42,7 @@ TEST(WorkspaceCommand, ASingularityMapIsDrawn) {
   const auto file = std::filesystem::path(testing::TempDir()) / "polyglide-map.svg";
   const json dut = answer({"workspace", "hexapod-6ups", "--singularity-map", "ab", "--json",
                            "--quiet", "-o", file.string()});
+  EXPECT_EQ(dut.at("slice"), "AB through home");
   EXPECT_FALSE(dut.at("curves").empty());
   EXPECT_EQ(dut.at("curves")[0].at("kind"), "direct");
   std::ifstream stream(file);
@@ -49,6 +50,13 @@ TEST(WorkspaceCommand, ASingularityMapIsDrawn) {
   text << stream.rdbuf();
   EXPECT_NE(text.str().find("<polyline class=\"c direct\""), std::string::npos);
   std::filesystem::remove(file);
+}
+
+TEST(WorkspaceCommand, ThePageOfASingularityMapNamesItsSliceAndCountsShreds) {
+  const std::string page =
+      run_polyglide({"workspace", "3-rrr-planar", "--singularity-map", "xy@0,0,0,0,0,20"}).out;
+  EXPECT_NE(page.find("singularities over XY at C 20°;"), std::string::npos) << page;
+  EXPECT_EQ(page.find("curve of 2 points"), std::string::npos) << page;
 }
 
 TEST(WorkspaceCommand, AnEmptyWorkspaceSaysWhatStopsHome) {
@@ -71,12 +79,13 @@ TEST(WorkspaceCommand, PlanarMachinesHaveAreas) {
 
 TEST(WorkspaceCommand, RefusesWhatCannotBe) {
   refused({"workspace", "delta-1", "--accuracy", "1e-20"}, "--accuracy");
-  refused({"workspace", "delta-1", "--accuracy", "nan"}, "no number");
+  refused({"workspace", "delta-1", "--accuracy", "nan"}, "--accuracy takes a number");
   refused({"workspace", "delta-1", "--box", "-1x2x3"}, "3 positive lengths");
   refused({"workspace", "delta-1", "--orientations-at", "0,0,0"}, "this one commands XYZ");
   refused({"workspace", "hexapod-6ups", "--orientations-at", "0,inf,0"}, "finite numbers");
   refused({"workspace", "hexapod-6ups", "--orientations-at", "1,2"}, "takes x,y,z");
-  refused({"workspace", "hexapod-6ups", "--total-orientation", "nan"}, "no number");
+  refused({"workspace", "hexapod-6ups", "--total-orientation", "nan"},
+          "--total-orientation takes a number");
   refused({"workspace", "hexapod-6ups", "--total-orientation", "200"}, "tilts up to 180");
   refused({"workspace", "delta-1", "--total-orientation", "5"}, "commands XYZ");
   refused({"workspace", "hexapod-6ups", "--torsion", "5"}, "--total-orientation");

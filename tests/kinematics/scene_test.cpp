@@ -60,6 +60,13 @@ TEST(Scene, DeltaOneHasCarriagesThatFollowDrivesAndAPlatformFromTheTable) {
   EXPECT_EQ(scene["joints"].size(), 15u);
 }
 
+TEST(Scene, APictureIsTheSceneWithoutWhatMovesIt) {
+  const Machine machine = catalog_machine("table1-6");
+  const Json scene = scene_of(machine), picture = picture_of(machine);
+  EXPECT_EQ(picture.size(), 2u);
+  for (const char* part : {"bodies", "segments"}) EXPECT_EQ(picture.at(part), scene.at(part));
+}
+
 TEST(Scene, RodsKeepTheirLengthInEveryTabulatedPose) {
   for (const char* name : {"delta-1", "table1-6", "four-bar", "3-prp", "bennett"}) {
     const Json scene = scene_of(catalog_machine(name), 200);

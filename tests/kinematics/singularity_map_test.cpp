@@ -112,6 +112,14 @@ TEST(SingularityMap, IsQuietWhereNothingIsSingularAndKeepsTheLimits) {
   for (const SingularCurve& curve : dut.curves) EXPECT_NE(curve.kind, "direct");
 }
 
+TEST(SingularityMap, NamesItsSlice) {
+  SingularityMap map;
+  map.axes = {0, 1};
+  EXPECT_EQ(slice_words(map), "XY through home");
+  map.at << 0.3, 0.4, -0.02, 0, 0, M_PI / 6;  // x and y are all over the slice
+  EXPECT_EQ(slice_words(map), "XY at Z -20 mm, C 30°");
+}
+
 TEST(SingularityMap, RefusesAxesThatAreNotCommanded) {
   const Machine machine = catalog_machine("delta-1");
   SingularityMapOptions options;

@@ -132,6 +132,17 @@ TEST_F(Design, ShowsTheBestLayoutsInFull) {
   EXPECT_EQ(run["stability"]["ranks"].size(), run["ranking"].size());
 }
 
+TEST_F(Design, EveryRankedLayoutHasAPicture) {
+  const auto& run = uninterrupted().run;
+  ASSERT_GT(run["ranking"].size(), 1u);
+  EXPECT_FALSE(run["ranking"][0].contains("scene")) << "it is among the layouts";
+  for (std::size_t i = 1; i < run["ranking"].size(); ++i) {
+    const auto& scene = run["ranking"][i].at("scene");
+    EXPECT_FALSE(scene.at("segments").empty());
+    EXPECT_FALSE(scene.contains("poses")) << "nothing but what the picture needs";
+  }
+}
+
 TEST_F(Design, KnownLayoutsAreAlwaysTuned) {
   json document = brief_document();
   document["tune"]["candidates"] = 1;

@@ -90,7 +90,9 @@ TEST(Study, TheStoredRunHoldsBothMachines) {
   EXPECT_EQ(run["layouts"][1]["id"], "delta-1");
   EXPECT_NEAR(run["layouts"][1]["workspace"]["volume"].get<double>(), 0.010007, 2e-5);
   for (const auto& row : run["requirements"]) EXPECT_EQ(row["verdict"], "met") << row.dump();
-  EXPECT_FALSE(run["duel"]["statement"].get<std::string>().empty());
+  const std::string statement = run["duel"]["statement"];
+  EXPECT_FALSE(statement.empty());
+  EXPECT_EQ(statement.find('_'), std::string::npos) << "keys are for programs: " << statement;
 }
 
 TEST(Study, IsTheSameForAnyNumberOfThreads) {

@@ -9,7 +9,8 @@ using Json = nlohmann::ordered_json;
 
 /// A map of 3 × 2 nodes with one curve.
 Json small_map() {
-  return Json::parse(R"({"name": "a < b & c", "axes": ["X", "C"], "u": [0, 0.1, 0.2], "v": [0, 1],
+  return Json::parse(
+      R"({"name": "a < b & c", "axes": ["X", "C"], "slice": "XC at Y 20 mm", "u": [0, 0.1, 0.2], "v": [0, 1],
     "inverse_condition": [[0.5, 0.5, null], [0.5, 0.2, null]],
     "limit": [[-1, -1, 0], [-1, 2, 0]],
     "curves": [{"kind": "direct", "closed": false, "gained": ["rotation <about> z"], "lost": [],
@@ -27,6 +28,7 @@ TEST(MapPicture, DrawsCurvesAxesAndALegend) {
   const std::string dut = map_svg(small_map());
   EXPECT_TRUE(dut.starts_with("<svg xmlns"));
   EXPECT_EQ(count(dut, "<polyline"), 1u);
+  EXPECT_NE(dut.find("singularities over XC at Y 20 mm"), std::string::npos);
   EXPECT_NE(dut.find("X [mm]"), std::string::npos);
   EXPECT_NE(dut.find("C [°]"), std::string::npos);
   EXPECT_NE(dut.find("direct singularity (type II)"), std::string::npos);

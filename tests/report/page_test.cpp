@@ -115,6 +115,18 @@ TEST_F(Page, DrawsEveryPartOfAFullRunWithAnEmptyConsole) {
   EXPECT_EQ(page.dom.find("class=\"failed\""), std::string::npos);
 }
 
+TEST_F(Page, DrawsAPictureOfEveryRankedLayoutThatHasAScene) {
+  nlohmann::json run = sample();
+  EXPECT_EQ(open(run).count("rank-pictures"), 4);
+  const nlohmann::json scene = run["layouts"].back()["scene"];
+  run["layouts"].erase(run["layouts"].size() - 1);
+  EXPECT_EQ(open(run).count("rank-pictures"), 3) << "no details are stored of the last";
+  run["ranking"].back()["scene"] = {{"bodies", scene["bodies"]}, {"segments", scene["segments"]}};
+  const Opened page = open(run);
+  EXPECT_EQ(page.count("rank-pictures"), 4);
+  EXPECT_EQ(page.console, "");
+}
+
 TEST_F(Page, ShowsTheLayoutNamedInTheAddressAlsoARejectedOne) {
   const Opened page = open(sample(), "layout-e58f613ac9027bd4");
   EXPECT_EQ(page.console, "");

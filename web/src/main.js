@@ -89,6 +89,7 @@ function countMarks(scheme) {
   const marks = document.documentElement.dataset;
   const all = (selector) => document.querySelectorAll(selector).length;
   marks.rankRows = all("table.ranking tbody tr");
+  marks.rankPictures = all("table.ranking .thumb svg");
   marks.heatmapCells = all(".heat svg path");
   marks.chartMarks = all(".chart svg path");
   marks.drawingLines = all("svg.drawing line");

@@ -14,10 +14,11 @@ function shares(rows, index) {
 
 function row(entry, selection, columns, bestScore) {
   const stored = selection.entries.get(entry.layout);
+  const scene = stored?.scene ?? entry.scene;
   const line = el("tr", { "data-layout": entry.layout, tabindex: stored ? 0 : null, class: stored ? "choice" : null,
     title: stored ? "Show this layout below" : "No details are stored for this layout" },
     el("td", { class: "num rank" }, String(entry.rank)),
-    el("td", { class: "thumb" }, stored?.scene ? thumbnail(stored.scene) : null),
+    el("td", { class: "thumb" }, scene ? thumbnail(scene) : null),
     el("td", { class: "name" }, el("b", {}, entry.title || stored?.title || entry.layout), el("br"),
       el("small", {}, [entry.known_as, entry.layout].filter(Boolean).join(" · "))),
     el("td", {}, number(entry.score, 3), bar(entry.score / bestScore, "score"),
