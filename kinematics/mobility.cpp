@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "catalog/counted.hpp"
 #include "kinematics/branches.hpp"
 #include "kinematics/evidence.hpp"
 #include "kinematics/manifold.hpp"
@@ -235,16 +236,17 @@ void Analysis::decide() {
     report_.verdict = Verdict::rigid;
     reasons.push_back(
         report_.home > 0
-            ? fmt::format(
-                  "The platform cannot move: the {} instantaneous freedom(s) at home do not "
-                  "continue into a finite motion.",
-                  report_.home)
+            ? fmt::format("The platform cannot move: {} at home, which {} not continue into a "
+                          "finite motion.",
+                          counted(report_.home, "instantaneous freedom"),
+                          report_.home == 1 ? "does" : "do")
             : "The platform cannot move: the loop-closure Jacobian at home has full column rank.");
   } else if (report_.locked_platform > 0) {
     report_.verdict = Verdict::uncertain;
-    reasons.push_back(
-        fmt::format("With all {} drives held the platform keeps {} freedom(s) at generic postures.",
-                    report_.drives, report_.locked_platform));
+    reasons.push_back(fmt::format(
+        "With {} held the platform keeps {} at generic postures.",
+        (report_.drives == 1 ? "its drive" : fmt::format("all {} drives", report_.drives)),
+        counted(report_.locked_platform, "freedom")));
   } else if (self_motion_) {
     report_.verdict = Verdict::uncertain;
     reasons.push_back(
@@ -264,25 +266,26 @@ void Analysis::decide() {
     report_.verdict = Verdict::singular_home;
     reasons.push_back(
         fmt::format("Home is an actuation singularity: with the drives held the platform keeps {} "
-                    "instantaneous freedom(s) there; generic postures are held.",
-                    report_.home_locked_platform));
+                    "there; generic postures are held.",
+                    counted(report_.home_locked_platform, "instantaneous freedom")));
   } else if (report_.surplus > 0) {
     report_.verdict = Verdict::overdriven;
-    reasons.push_back(
-        fmt::format("{} drives control {} freedom(s): {} too many, which work against each other.",
-                    report_.drives, report_.finite - report_.locked_mobility, report_.surplus));
+    reasons.push_back(fmt::format("{} control {}: {} too many, which work against each other.",
+                                  counted(report_.drives, "drive"),
+                                  counted(report_.finite - report_.locked_mobility, "freedom"),
+                                  report_.surplus));
   } else {
     report_.verdict = Verdict::determinate;
     reasons.push_back(fmt::format(
-        "The {} the platform's {} freedom(s) ({}) at home and at generic postures.",
+        "The {} the platform's {} ({}) at home and at generic postures.",
         report_.drives == 1 ? "drive holds" : fmt::format("{} drives hold", report_.drives),
-        report_.platform_dof, report_.axes));
+        counted(report_.platform_dof, "freedom"), report_.axes));
   }
   if (report_.redundant_constraints > 0)
     reasons.push_back(
-        fmt::format("{} constraint(s) are redundant: the machine {} only as far as its axes are "
+        fmt::format("{} redundant: the machine {} only as far as its axes are "
                     "exactly parallel or intersecting as drawn.",
-                    report_.redundant_constraints,
+                    counted(report_.redundant_constraints, "constraint is", "constraints are"),
                     report_.verdict == Verdict::rigid ? "can be assembled" : "moves"));
   if (std::max(report_.noise, report_.residual) > kDrawnNoise)
     reasons.push_back(
