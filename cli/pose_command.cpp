@@ -47,7 +47,11 @@ std::string add_indices(const Machine& machine, const Pose& pose, const Eigen::V
                         const std::optional<Posture>& posture, const Springs& springs,
                         ordered_json& document) {
   const auto indices = indices_at(machine, pose, drives, posture, springs);
-  if (!indices) return "";
+  if (!indices) {
+    const std::string reason = why_no_indices(machine, posture);
+    document["no_indices"] = reason;
+    return "  no conditioning: " + reason + "\n";
+  }
   add_json(*indices, machine.task, document);
   return text_of(*indices, springs);
 }

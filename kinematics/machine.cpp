@@ -1,3 +1,7 @@
+#include <Eigen/QR>
+#include <algorithm>
+
+#include "kinematics/manifold.hpp"
 #include "kinematics/mobility.hpp"
 #include "kinematics/motion.hpp"
 #include "kinematics/planar.hpp"
@@ -28,6 +32,34 @@ TaskSpace by_tool_position(const Model& model, const TaskSpace& task) {
   return tool;
 }
 
+/// Where the platform's motion at home is as rich as elsewhere but some of the axes chosen at a
+/// generic posture stand still there (the coupler of a four-bar whose crank and rocker are parallel
+/// does not turn), such axes cannot command what happens about home: others are chosen, which span
+/// the largest part of the motion at home, rotations counting as the way at the characteristic
+/// length.
+TaskSpace by_motion_at_home(const Model& model, const TaskSpace& task) {
+  constexpr double kStandsStill = 1e-6;
+  const Freedoms freedoms = freedoms_at(model, home(model));
+  const auto count = static_cast<Eigen::Index>(task.axes.size());
+  if (count == 0 || freedoms.platform_rank.rank != count) return task;
+  Eigen::MatrixXd twists(6, freedoms.platform.cols());
+  twists << freedoms.platform.bottomRows<3>() * model.size,
+      freedoms.platform.topRows<3>() * characteristic_length(model);
+  const Eigen::MatrixXd motion = svd_of(twists).u.leftCols(count);
+  if (singular_values(motion(task.axes, Eigen::all))[count - 1] > kStandsStill) return task;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivots(motion.transpose());
+  TaskSpace other = task;
+  for (Eigen::Index k = 0; k < count; ++k)
+    other.axes[static_cast<std::size_t>(k)] = pivots.colsPermutation().indices()[k];
+  std::ranges::sort(other.axes);
+  other.translations =
+      static_cast<int>(std::ranges::count_if(other.axes, [](int axis) { return axis < 3; }));
+  other.rotations = static_cast<int>(count) - other.translations;
+  other.rotation_axis.setZero();
+  other.pure = false;
+  return other;
+}
+
 }  // namespace
 
 Machine prepare(const Mechanism& mechanism) {
@@ -35,7 +67,8 @@ Machine prepare(const Mechanism& mechanism) {
   options.walks = 2;
   options.evidence = false;
   const Model model = compile(mechanism);
-  return prepare(mechanism, by_tool_position(model, analyse_mobility(model, options).task));
+  const TaskSpace task = by_motion_at_home(model, analyse_mobility(model, options).task);
+  return prepare(mechanism, by_tool_position(model, task));
 }
 
 Machine prepare(const Mechanism& mechanism, const TaskSpace& task) {

@@ -17,8 +17,10 @@ struct Machine {
   std::optional<LegMachine> legs;
 };
 
-/// Compiles a mechanism and finds its task space (a short mobility analysis). Planar machines of two
-/// freedoms whose tool has both its coordinates free, such as five-bars, are commanded by these.
+/// Compiles a mechanism and finds its task space (a short mobility analysis). Planar machines of
+/// two freedoms whose tool has both its coordinates free, such as five-bars, are commanded by
+/// these; machines of which some axes stand still at home, such as four-bars with parallel cranks,
+/// by others.
 [[nodiscard]] Machine prepare(const Mechanism& mechanism);
 
 /// The same for a mechanism whose task space is known, as when only dimensions

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "catalog/counted.hpp"
+#include "kinematics/motion.hpp"
 #include "kinematics/rank.hpp"
 
 namespace polyglide {
@@ -78,6 +79,20 @@ void add_stiffness(PoseIndices& result, const TaskSpace& task, const Eigen::Vect
 }  // namespace
 
 bool knows_rods(const Machine& machine) { return machine.legs && machine.task.pure; }
+
+std::string why_no_indices(const Machine& machine, const std::optional<Posture>& posture) {
+  const std::size_t axes = machine.task.axes.size();
+  if (axes == 0) return "the machine commands no motion of the platform";
+  if (!posture)
+    return "a rod stands across the motion of its carriage or crank: the rate of its drive does "
+           "not follow from the platform's";
+  const int freedoms = freedoms_at(machine.model, *posture).platform_rank.rank;
+  if (freedoms < static_cast<int>(axes))
+    return fmt::format("the platform has only {} of its {} freedoms here, while a drive can move",
+                       freedoms, axes);
+  return fmt::format("{} do not command the machine here: it can move while they stand still",
+                     axes_name(machine.task.axes));
+}
 
 std::optional<PoseIndices> indices_at(const Machine& machine, const Pose& pose,
                                       const Eigen::VectorXd& drives,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "kinematics/solve.hpp"
@@ -53,6 +54,10 @@ struct PoseIndices {
                                                     const Eigen::VectorXd& drives,
                                                     const std::optional<Posture>& posture,
                                                     const Springs& springs = {});
+
+/// Why indices_at() gives nothing, in words; arguments as there.
+[[nodiscard]] std::string why_no_indices(const Machine& machine,
+                                         const std::optional<Posture>& posture);
 
 /// Whether springs can have rods: the legs have closed forms and the task space is pure.
 [[nodiscard]] bool knows_rods(const Machine& machine);

@@ -30,7 +30,8 @@ std::string message_of(const Machine& machine, const Springs& springs) {
   return "";
 }
 
-// Textbook: three drives at right angles that move the tool one to one, each with its rods in series.
+// Textbook: three drives at right angles that move the tool one to one, each with its rods in
+// series.
 TEST(Stiffness, OfPerpendicularStrutsIsThatOfEach) {
   const Machine machine = prepare(orthoglide(2), task_of({0, 1, 2}));
   const auto dut = at_home(machine, {{1e6, 2e6, 4e6}, 4e6, {}});
@@ -135,6 +136,44 @@ TEST(PlanarMachines, OfTwoFreedomsAreCommandedByTheTool) {
   ASSERT_TRUE(dut.reachable) << dut.limit;
   EXPECT_LT((dut.pose.position - Vector3(0.01, 0.02, 0)).norm(), 1e-9);
   EXPECT_GT(dut.pose.rotation.angularDistance(Eigen::Quaterniond::Identity()), 1e-3);
+}
+
+// Crank and rocker are parallel at home, so the coupler does not turn there, and its rotation
+// commands nothing: x = -40 mm · crank angle does.
+TEST(Stiffness, OfAFourBarIsOverWhatMovesAtHome) {
+  const Machine machine = catalog_machine("four-bar");
+  EXPECT_EQ(machine.task.axes, std::vector<int>{0});
+  const auto dut = at_home(machine);
+  ASSERT_TRUE(dut);
+  EXPECT_NEAR(dut->jacobian(0, 0), -1 / 0.04, 1e-9);
+  EXPECT_DOUBLE_EQ(dut->condition, 1);
+  EXPECT_FALSE(dut->rotation);
+}
+
+TEST(Stiffness, IsKnownAtHomeOfEveryMachineThatMoves) {
+  for (const std::string& name : catalog_names()) {
+    const Machine machine = catalog_machine(name);
+    EXPECT_EQ(at_home(machine).has_value(), !machine.task.axes.empty())
+        << name << ": " << why_no_indices(machine, home(machine.model));
+  }
+  EXPECT_EQ(catalog_machine("verne").task.axes, (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(catalog_machine("metrom-pentapod").task.translations, 3);
+  EXPECT_EQ(catalog_machine("metrom-pentapod").task.rotations, 2);
+}
+
+TEST(Stiffness, SaysWhyItIsNotKnown) {
+  Machine four_bar = catalog_machine("four-bar");
+  four_bar.task = task_of({5});
+  EXPECT_FALSE(at_home(four_bar));
+  EXPECT_EQ(why_no_indices(four_bar, home(four_bar.model)),
+            "C do not command the machine here: it can move while they stand still");
+  four_bar.task = task_of({0, 1});
+  EXPECT_FALSE(at_home(four_bar));
+  EXPECT_NE(why_no_indices(four_bar, home(four_bar.model)).find("only 1 of its 2 freedoms"),
+            std::string::npos);
+  four_bar.task = {};
+  EXPECT_FALSE(at_home(four_bar));
+  EXPECT_NE(why_no_indices(four_bar, std::nullopt).find("commands no motion"), std::string::npos);
 }
 
 }  // namespace
