@@ -123,22 +123,27 @@ CLI::Validator whole_number(const std::string& option, std::uint64_t least, std:
   });
 }
 
+namespace {
+
+CLI::Validator taking_number(const std::string& option, const std::string& kind,
+                             const std::function<bool(double)>& fits) {
+  return taking(option, kind, [fits](const std::string& word) {
+    double value = 0;
+    return CLI::detail::lexical_cast(word, value) && fits(value);
+  });
+}
+
+}  // namespace
+
 CLI::Validator number_between(const std::string& option, double least, double most) {
-  return taking(option, fmt::format("a number from {:g} to {:g}", least, most),
-                [=](const std::string& word) {
-                  double value = 0;
-                  return CLI::detail::lexical_cast(word, value) && value >= least && value <= most;
-                })
+  return taking_number(option, fmt::format("a number from {:g} to {:g}", least, most),
+                       [=](double value) { return value >= least && value <= most; })
       .description(fmt::format("{:g} to {:g}", least, most));
 }
 
 CLI::Validator positive_number(const std::string& option) {
-  return taking(option, "a positive number",
-                [](const std::string& word) {
-                  double value = 0;
-                  return CLI::detail::lexical_cast(word, value) && value > 0 &&
-                         std::isfinite(value);
-                })
+  return taking_number(option, "a positive number",
+                       [](double value) { return value > 0 && std::isfinite(value); })
       .description("positive");
 }
 

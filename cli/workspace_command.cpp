@@ -10,6 +10,7 @@
 #include "cli/progress.hpp"
 #include "cli/singularities.hpp"
 #include "cli/workspace_page.hpp"
+#include "kinematics/motion.hpp"
 #include "report/map_picture.hpp"
 
 namespace polyglide {
@@ -78,9 +79,7 @@ ordered_json certify(const ChosenMachine& chosen, const Asked& asked, bool json)
 }
 
 std::string axes_text(const std::vector<int>& axes) {
-  std::string text;
-  for (int axis : axes) text += "XYZABC"[axis];
-  return text.empty() ? "none" : text;
+  return axes.empty() ? "none" : axes_name(axes);
 }
 
 ordered_json orientations(const ChosenMachine& chosen, const Asked& asked, CommandLine& line) {

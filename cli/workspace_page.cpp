@@ -9,6 +9,7 @@
 
 #include "catalog/counted.hpp"
 #include "cli/print.hpp"
+#include "kinematics/motion.hpp"
 #include "kinematics/solve.hpp"
 
 namespace polyglide {
@@ -198,15 +199,14 @@ void print_page(const OrientationWorkspace& workspace, const Vector3& at, const 
 }
 
 void print_page(const SingularityMap& map, const std::string& name) {
-  constexpr const char* kNames = "XYZABC";
   constexpr std::size_t kShort =
       5;  // pieces of a curve that the end of reach cuts off, and the like
   const auto text = [&](int k, double value) {
     return map.axes[k] < 3 ? in_mm(value) : in_degrees(value);
   };
   std::cout << fmt::format("{}: singularities over {}; {} {} to {}, {} {} to {}\n", name,
-                           slice_words(map), kNames[map.axes[0]], text(0, map.u.front()),
-                           text(0, map.u.back()), kNames[map.axes[1]], text(1, map.v.front()),
+                           slice_words(map), axes_name({map.axes[0]}), text(0, map.u.front()),
+                           text(0, map.u.back()), axes_name({map.axes[1]}), text(1, map.v.front()),
                            text(1, map.v.back()));
   std::map<std::string, int> short_ones;
   for (const SingularCurve& curve : map.curves) {

@@ -224,8 +224,8 @@ bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
   for (const double length : {kShort, kShort / 4}) {
     Posture posture = home_;
     if (!step(posture, even_mixture(kernel, random_), length, Way::straight)) continue;
-    Freedoms free = freedoms_at(model_, posture, Certainty::screened);
-    Branch branch{kernel_of(free), {}, {}, 0};
+    const Place near = screened(std::move(posture));
+    Branch branch{kernel_of(near.free), {}, {}, 0};
     if (branch.near_kernel.cols() != kernel.cols()) return false;
     // One mixture may happen to hold little of a freedom that does not continue.
     for (int more = 1; more < options_.walks; ++more) {
@@ -233,7 +233,7 @@ bool Explorer::leave_smoothly(const Eigen::MatrixXd& kernel) {
       if (!step(other, even_mixture(kernel, random_), length, Way::straight)) return false;
     }
     // Where no walk gets on, a condition of higher order was too small to be seen so close.
-    if (!walk_far(branch, {std::move(posture), std::move(free)})) return false;
+    if (!walk_far(branch, near)) return false;
     if (slow_) return false;
     result_.branches.push_back(std::move(branch));
     return true;

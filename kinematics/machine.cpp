@@ -1,7 +1,5 @@
-#include <Eigen/QR>
 #include <algorithm>
 
-#include "kinematics/manifold.hpp"
 #include "kinematics/mobility.hpp"
 #include "kinematics/motion.hpp"
 #include "kinematics/planar.hpp"
@@ -47,11 +45,8 @@ TaskSpace by_motion_at_home(const Model& model, const TaskSpace& task) {
       freedoms.platform.topRows<3>() * characteristic_length(model);
   const Eigen::MatrixXd motion = svd_of(twists).u.leftCols(count);
   if (singular_values(motion(task.axes, Eigen::all))[count - 1] > kStandsStill) return task;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivots(motion.transpose());
   TaskSpace other = task;
-  for (Eigen::Index k = 0; k < count; ++k)
-    other.axes[static_cast<std::size_t>(k)] = pivots.colsPermutation().indices()[k];
-  std::ranges::sort(other.axes);
+  other.axes = independent_rows(motion, count);
   other.translations =
       static_cast<int>(std::ranges::count_if(other.axes, [](int axis) { return axis < 3; }));
   other.rotations = static_cast<int>(count) - other.translations;

@@ -216,14 +216,15 @@ void Analysis::look_for_self_motion() {
   if (report_.home_locked_platform == 0 || settled) return;
   const Departure held =
       leave(model_, home_, home_locked_.kernel, true, walk_options(1, options_.steps), random_);
+  const auto moved = [&](const Place& place) {
+    const double way = displacement(model_, home_, place.posture);
+    const int platform = model_.mechanism.platform;
+    return displacement(model_, home_, place.posture, platform) > kMoved * way &&
+           hold_drives(model_, place.free).platform_rank.rank > 0;
+  };
   // Where every freedom continues, the platform's do, however little of them a walk happens to use.
   self_motion_ = held.smooth || std::ranges::any_of(held.branches, [&](const Branch& branch) {
-                   return std::ranges::any_of(branch.far, [&](const Place& place) {
-                     const double way = displacement(model_, home_, place.posture);
-                     const int platform = model_.mechanism.platform;
-                     return displacement(model_, home_, place.posture, platform) > kMoved * way &&
-                            hold_drives(model_, place.free).platform_rank.rank > 0;
-                   });
+                   return std::ranges::any_of(branch.far, moved);
                  });
   report_.residual = std::max(report_.residual, held.residual);
   // A motion that was found says more than ways that are not excluded.

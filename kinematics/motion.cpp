@@ -13,16 +13,6 @@ namespace {
 /// ones are of the order of 1.
 constexpr RankScale kTurning{1e-8, 1e-3};
 
-/// Indices of `count` rows that are independent, chosen by pivoting, ascending.
-std::vector<int> independent_rows(const Eigen::MatrixXd& matrix, int count) {
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix.transpose());
-  std::vector<int> rows;
-  for (int i = 0; i < count; ++i)
-    rows.push_back(static_cast<int>(qr.colsPermutation().indices()[i]));
-  std::sort(rows.begin(), rows.end());
-  return rows;
-}
-
 /// Which freedoms belong to joints closing a loop, loop by loop, and which do not.
 struct Split {
   std::vector<std::vector<int>> closing;  ///< per loop

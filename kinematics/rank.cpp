@@ -91,6 +91,14 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& basis) {
          Eigen::MatrixXd::Identity(basis.rows(), basis.cols());
 }
 
+std::vector<int> independent_rows(const Eigen::MatrixXd& matrix, Eigen::Index count) {
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix.transpose());
+  const auto& order = qr.colsPermutation().indices();
+  std::vector<int> rows(order.begin(), order.begin() + count);
+  std::ranges::sort(rows);
+  return rows;
+}
+
 namespace {
 
 constexpr double kSurelyReal = 1e-5, kSurelyNoise = 1e-10;  // of the largest pivot

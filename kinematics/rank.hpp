@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace polyglide {
 
@@ -21,6 +22,9 @@ struct Svd {
 
 /// Orthonormal basis of the columns' span, the columns being independent.
 [[nodiscard]] Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& basis);
+
+/// Indices of `count` rows that are independent, chosen by pivoting, ascending.
+[[nodiscard]] std::vector<int> independent_rows(const Eigen::MatrixXd& matrix, Eigen::Index count);
 
 /// A rank decided by the largest gap between neighbouring singular values.
 struct RankDecision {

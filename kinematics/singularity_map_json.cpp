@@ -3,14 +3,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "kinematics/motion.hpp"
 #include "kinematics/singularity_map.hpp"
 
 namespace polyglide {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kAxes[] = {"X", "Y", "Z", "A", "B", "C"};
 
 }  // namespace
 
@@ -19,12 +18,11 @@ std::string slice_words(const SingularityMap& map) {
   for (int axis = 0; axis < 6; ++axis) {
     const double at = map.at[axis];
     if (at == 0 || axis == map.axes[0] || axis == map.axes[1]) continue;
-    where += fmt::format("{}{} {}", where.empty() ? " at " : ", ", kAxes[axis],
+    where += fmt::format("{}{} {}", where.empty() ? " at " : ", ", axes_name({axis}),
                          axis < 3 ? fmt::format("{:.6g} mm", at * 1e3)
                                   : fmt::format("{:.6g}°", at * 180 / std::numbers::pi));
   }
-  return std::string(kAxes[map.axes[0]]) + kAxes[map.axes[1]] +
-         (where.empty() ? " through home" : where);
+  return axes_name({map.axes[0], map.axes[1]}) + (where.empty() ? " through home" : where);
 }
 
 Json to_json(const SingularityMap& map) {
@@ -43,7 +41,7 @@ Json to_json(const SingularityMap& map) {
     return list;
   };
   Json json;
-  json["axes"] = {kAxes[map.axes[0]], kAxes[map.axes[1]]};
+  json["axes"] = {axes_name({map.axes[0]}), axes_name({map.axes[1]})};
   json["slice"] = slice_words(map);
   json["at"] = std::vector<double>(map.at.begin(), map.at.end());
   json["square"] = map.square;
