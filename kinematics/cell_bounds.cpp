@@ -73,13 +73,14 @@ class CellJudge::Tally {
   bool lost_ = false;
 };
 
-CellJudge::CellJudge(const LegBounds& limits, int side)
+CellJudge::CellJudge(const LegBounds& limits, std::optional<int> side)
     : limits_(limits), side_(side), quadrics_(limits.quadrics(rest_)) {}
 
 CellBounds CellJudge::unknown() const {
   CellBounds cell;
   for (std::size_t i = 0; i < quadrics_.size(); ++i) cell.quadrics.set(i);
   cell.rest = rest_;
+  cell.regular = !side_;
   return cell;
 }
 
@@ -131,15 +132,15 @@ bool CellJudge::judge_rest(const PoseBox& box, CellBounds& cell, Tally& tally) c
 /// False when det J has the other sign on all of the cell.
 bool CellJudge::judge_regularity(const PoseBox& box, CellBounds& cell, Tally& tally) const {
   const IntervalMatrix jacobian = limits_.rod_rows(box);
-  if (side_ == 0) {
+  if (*side_ == 0) {
     cell.regular = singular_value_bounds(jacobian).least_lower > 0;
     if (!cell.regular) tally.give_up();
     return true;
   }
   const int sign = determinant_sign(jacobian);
-  cell.regular = sign == side_;
+  cell.regular = sign == *side_;
   if (sign != 0) return cell.regular;
-  const auto face = singular_face(limits_, box, tally.cuboid(), side_);
+  const auto face = singular_face(limits_, box, tally.cuboid(), *side_);
   if (!face) {
     tally.give_up();
     return true;

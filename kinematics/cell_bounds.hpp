@@ -29,8 +29,9 @@ struct CellBounds {
 /// the box. Needs UpwardRounding. Fixed; share between threads.
 class CellJudge {
  public:
-  /// @param side sign of det J that counts; 0 where J is not square
-  CellJudge(const LegBounds& limits, int side);
+  /// @param side sign of det J that counts; 0 where J is not square; null where singular poses
+  /// belong to the workspace, too
+  CellJudge(const LegBounds& limits, std::optional<int> side);
 
   /// Nothing known.
   [[nodiscard]] CellBounds unknown() const;
@@ -46,7 +47,7 @@ class CellJudge {
   bool judge_regularity(const PoseBox& box, CellBounds& cell, Tally& tally) const;
 
   const LegBounds& limits_;
-  int side_;
+  std::optional<int> side_;
   LegBounds::Mask rest_;
   std::vector<QuadricLimit> quadrics_;
 };

@@ -10,7 +10,7 @@ namespace {
 /// Boxes of places, split where their bounds are widest.
 class Octree {
  public:
-  Octree(const LegBounds& limits, const Bounds& box, int side, bool holds_all)
+  Octree(const LegBounds& limits, const Bounds& box, std::optional<int> side, bool holds_all)
       : box_(box), judge_(limits, side), holds_all_(holds_all) {}
 
   std::optional<CertifiedVolume> run(double tolerance, int budget) {
@@ -164,33 +164,38 @@ class Octree {
   std::vector<OctreeCell> cells_;
 };
 
+/// Sign of det J at home, 0 where J is not square; nullopt where home is, or may be, singular.
+std::optional<int> side_of_home(const Machine& machine, const std::vector<std::string>& ignored) {
+  const auto limits = LegBounds::make(machine, ignored, Eigen::Quaterniond::Identity(), false);
+  if (!limits) return std::nullopt;
+  PoseBox home;
+  home.fill(Interval(0.0));
+  const IntervalMatrix jacobian = limits->rod_rows(home);
+  if (jacobian.rows() < jacobian.cols()) return std::nullopt;
+  if (jacobian.rows() > jacobian.cols()) return 0;
+  const int side = determinant_sign(jacobian);
+  return side != 0 ? std::optional(side) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<CertifiedVolume> certify_volume(const Machine& machine,
                                               const std::vector<std::string>& ignored,
                                               const Eigen::Quaterniond& rotation, const Bounds& box,
-                                              double tolerance, int budget) {
+                                              bool singular_too, double tolerance, int budget) {
   if (machine.task.translations != 3) return std::nullopt;
   const auto asked = coordinates_of({Vector3::Zero(), rotation.normalized()});
   for (int axis = 3; axis < 6; ++axis)
     if (std::abs(asked[axis]) > 1e-9 &&
         std::count(machine.task.axes.begin(), machine.task.axes.end(), axis) == 0)
       return std::nullopt;
-  std::optional<LegBounds> limits, at_home;
-  int side = 0;
+  std::optional<LegBounds> limits;
+  std::optional<int> side;
   {
     const UpwardRounding rounding;
     limits = LegBounds::make(machine, ignored, rotation, false);
-    at_home = LegBounds::make(machine, ignored, Eigen::Quaterniond::Identity(), false);
-    if (!limits || !at_home) return std::nullopt;
-    PoseBox home;
-    home.fill(Interval(0.0));
-    const IntervalMatrix jacobian = at_home->rod_rows(home);
-    if (jacobian.rows() < jacobian.cols()) return std::nullopt;
-    if (jacobian.rows() == jacobian.cols()) {
-      side = determinant_sign(jacobian);
-      if (side == 0) return std::nullopt;
-    }
+    if (!limits) return std::nullopt;
+    if (!singular_too && !(side = side_of_home(machine, ignored))) return std::nullopt;
   }
   // A margin, so that what is inside does not touch the box, and uneven, so that faces
   // of the workspace do not lie in faces of cells.

@@ -5,7 +5,7 @@
 namespace polyglide {
 
 /// Proved bounds of the volume of the workspace: the connected part around home where every
-/// limit holds and det J keeps home's sign.
+/// limit holds and, unless singular poses count as well, det J keeps home's sign.
 struct CertifiedVolume {
   double lower = 0, upper = 0;  ///< [m³]
   int cells = 0;                ///< examined
@@ -19,13 +19,14 @@ struct CertifiedVolume {
 /// joined for the lower bound only through points proved inside, and separated for the upper
 /// bound only by cells proved outside.
 /// nullopt where nothing can be proved: no closed form, fewer than three translations, home
-/// outside or singular, or a workspace that the search box does not hold.
+/// outside or singular (but where `singular_too`), or a workspace that the search box does not
+/// hold.
 /// Poses are meant without rounding of the rotation; the slack of 1e-9 m at limits is the
 /// evaluator's.
 [[nodiscard]] std::optional<CertifiedVolume> certify_volume(const Machine& machine,
                                                             const std::vector<std::string>& ignored,
                                                             const Eigen::Quaterniond& rotation,
-                                                            const Bounds& box, double tolerance,
-                                                            int budget = 600000);
+                                                            const Bounds& box, bool singular_too,
+                                                            double tolerance, int budget = 600000);
 
 }  // namespace polyglide

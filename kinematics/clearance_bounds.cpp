@@ -60,10 +60,6 @@ Nearest nearest(const Piece& a, const Piece& b) {
 
 double infinity() { return std::numeric_limits<double>::infinity(); }
 
-IntervalVector difference(const IntervalVector& a, const IntervalVector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
 /// The common hull.
 Interval joined(const Interval& a, const Interval& b) {
   return {std::min(a.lower(), b.lower()), std::max(a.upper(), b.upper())};
@@ -123,20 +119,29 @@ LegBounds::Moved LegBounds::move(const LegPlace& corner, const Place& now) const
     return moved;
   }
   const Leg& leg = legs_[corner.leg];
-  if (corner.kind == Kind::carriage) {
+  if (corner.kind == Kind::carriage || corner.kind == Kind::crank) {
     const Drive& drive = now.drives[leg.drive];
-    for (int i = 0; i < 3; ++i) moved.at[i] += leg.direction[i] * drive.place;
+    IntervalVector speed = vector_of(leg.direction);
+    if (corner.kind == Kind::carriage) {
+      for (int i = 0; i < 3; ++i) moved.at[i] += speed[i] * drive.place;
+    } else {
+      const IntervalVector arm = turned(drive.turn, difference(moved.at, vector_of(leg.centre)));
+      for (int i = 0; i < 3; ++i) moved.at[i] = leg.centre[i] + arm[i];
+      speed = cross(leg.direction, arm);
+    }
     for (int k = 0; k < 6; ++k) {
       Interval rate = k < 3 ? drive.row[k] : Interval(0.0);
       if (k >= 3 && now.turning.varies[k - 3])
         rate = dot(drive.row, cross(now.turning.axes[k - 3], drive.arm));
-      for (int i = 0; i < 3; ++i) moved.by[k][i] = leg.direction[i] * rate;
+      for (int i = 0; i < 3; ++i) moved.by[k][i] = speed[i] * rate;
     }
     return moved;
   }
   const bool strut = leg.kind == Leg::Kind::strut;
-  const Moved base =
-      move({strut ? Kind::fixed : Kind::carriage, leg.base_point, corner.leg, 0}, now);
+  const Kind carrier = strut                              ? Kind::fixed
+                       : leg.kind == Leg::Kind::crank_rod ? Kind::crank
+                                                          : Kind::carriage;
+  const Moved base = move({carrier, leg.base_point, corner.leg, 0}, now);
   const Moved top = move({Kind::platform, leg.platform_point, -1, 0}, now);
   IntervalVector way;
   for (int i = 0; i < 3; ++i) way[i] = top.at[i] - base.at[i];

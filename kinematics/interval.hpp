@@ -95,6 +95,18 @@ class UpwardRounding {
   return cosine(x - Interval(1.5707963267948966, 1.5707963267948968));
 }
 
+/// Angle of the vectors (x, y), in [-π, π]; all of it where they may have none, or cross the half
+/// turn. The library's arctangent is off by less than the four steps allowed here.
+[[nodiscard]] inline Interval angle_of(const Interval& x, const Interval& y) {
+  constexpr double kAbove = 3.1415926535897936;  // just above pi
+  if (!(x.lower() > 0 || y.lower() > 0 || y.upper() < 0)) return {-kAbove, kAbove};
+  const std::array<double, 4> corners{
+      std::atan2(y.lower(), x.lower()), std::atan2(y.lower(), x.upper()),
+      std::atan2(y.upper(), x.lower()), std::atan2(y.upper(), x.upper())};
+  const auto [least, most] = std::minmax_element(corners.begin(), corners.end());
+  return outward(*least, *most, 4);
+}
+
 /// The common part; `a` where rounding left none.
 [[nodiscard]] inline Interval common(const Interval& a, const Interval& b) {
   const double lower = std::max(a.lower(), b.lower()), upper = std::min(a.upper(), b.upper());
@@ -113,6 +125,14 @@ template <typename A, typename B>
   return {Interval(a[1]) * b[2] - Interval(a[2]) * b[1],
           Interval(a[2]) * b[0] - Interval(a[0]) * b[2],
           Interval(a[0]) * b[1] - Interval(a[1]) * b[0]};
+}
+
+[[nodiscard]] inline IntervalVector difference(const IntervalVector& a, const IntervalVector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+[[nodiscard]] inline IntervalVector scaled(const IntervalVector& a, const Interval& factor) {
+  return {a[0] * factor, a[1] * factor, a[2] * factor};
 }
 
 /// |a|²; tighter than dot(a, a), which forgets that both factors are the same.

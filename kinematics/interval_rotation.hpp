@@ -45,10 +45,10 @@ using IntervalRotation = std::array<IntervalVector, 3>;  ///< rows
   return r;
 }
 
-/// Rotation by `angle` about a unit axis, which may be an enclosure.
-[[nodiscard]] inline IntervalRotation rotation_about(const IntervalVector& axis,
-                                                     const Interval& angle) {
-  const Interval c = cosine(angle), s = sine(angle), rest = 1.0 - c;
+/// Rotation by the angle of cosine `c` and sine `s` about a unit axis, which may be an enclosure.
+[[nodiscard]] inline IntervalRotation rotation_about(const IntervalVector& axis, const Interval& c,
+                                                     const Interval& s) {
+  const Interval rest = 1.0 - c;
   IntervalRotation r;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
@@ -62,6 +62,11 @@ using IntervalRotation = std::array<IntervalVector, 3>;  ///< rows
   r[0][2] += s * axis[1], r[2][0] -= s * axis[1];
   r[1][2] -= s * axis[0], r[2][1] += s * axis[0];
   return r;
+}
+
+[[nodiscard]] inline IntervalRotation rotation_about(const IntervalVector& axis,
+                                                     const Interval& angle) {
+  return rotation_about(axis, cosine(angle), sine(angle));
 }
 
 }  // namespace polyglide

@@ -3,15 +3,6 @@
 #include "kinematics/limits.hpp"
 
 namespace polyglide {
-namespace {
-
-const Interval kAnything(-std::numeric_limits<double>::infinity(),
-                         std::numeric_limits<double>::infinity());
-
-double infinity() { return std::numeric_limits<double>::infinity(); }
-
-}  // namespace
-
 std::size_t LegBounds::add(const std::string& name) {
   names_.push_back(name);
   return names_.size() - 1;
@@ -24,11 +15,16 @@ void LegBounds::add_row(const Machine& machine, int index,
   row.leg = machine.legs->legs[index];
   row.primary = machine.legs->primary[row.leg.drive] == index;
   const IntervalVector p = vector_of(row.leg.platform_point), b = vector_of(row.leg.base_point);
-  for (int i = 0; i < 3; ++i) {
-    row.arm[i] = p[i] - tool_[i];
-    row.base[i] = b[i] - tool_[i];
+  row.arm = difference(p, vector_of(tool_));
+  row.base = difference(b, vector_of(tool_));
+  row.length = root(squared_norm(difference(p, b)));
+  if (row.leg.kind == Leg::Kind::crank_rod) {
+    const IntervalVector arm = difference(b, vector_of(row.leg.centre));
+    row.base = difference(vector_of(row.leg.centre), vector_of(tool_));
+    row.radius = root(squared_norm(arm));
+    row.outward = scaled(arm, 1.0 / row.radius);
+    row.onward = cross(row.leg.direction, row.outward);
   }
-  row.length = root(squared_norm({p[0] - b[0], p[1] - b[1], p[2] - b[2]}));
   row.reach = add("reach " + mechanism.bodies[leg_body(mechanism, row.leg)]);
   if (row.primary) {
     const int joint = machine.model.freedoms[machine.model.drives[row.leg.drive]].joint;
@@ -66,7 +62,7 @@ void LegBounds::add_planes(const Machine& machine, const std::vector<std::string
 std::optional<LegBounds> LegBounds::make(const Machine& machine,
                                          const std::vector<std::string>& ignored,
                                          const Eigen::Quaterniond& fixed, bool turning) {
-  if (!machine.legs || !machine.task.pure || has_cranks(*machine.legs)) return std::nullopt;
+  if (!machine.legs || !machine.task.pure) return std::nullopt;
   LegBounds result;
   result.tool_ = machine.model.mechanism.tool;
   result.fixed_ = fixed;
@@ -101,113 +97,6 @@ std::optional<LegBounds> LegBounds::make(const Machine& machine,
     return std::nullopt;
   if (result.names_.size() > kMost) return std::nullopt;
   return result;
-}
-
-LegBounds::Turned LegBounds::turn(const PoseBox& box) const {
-  const IntervalVector x = vector_of(Vector3::UnitX()), y = vector_of(Vector3::UnitY()),
-                       z = vector_of(Vector3::UnitZ());
-  Turned result;
-  bool turns = false;
-  for (int i = 0; i < 3; ++i) {
-    result.varies[i] = magnitude(box[3 + i]) > 0;
-    turns = turns || result.varies[i];
-  }
-  const bool as_at_home = fixed_.vec().isZero(0);
-  const IntervalRotation fixed = as_at_home ? no_rotation() : rotation_of(fixed_);
-  if (!turns) {
-    result.rotation = fixed;
-    result.axes = {x, y, z};
-    return result;
-  }
-  const IntervalRotation rz = rotation_about(z, box[5]);
-  const IntervalRotation zy = product(rz, rotation_about(y, box[4]));
-  result.axes = {turned(zy, x), turned(rz, y), z};
-  result.rotation = product(product(zy, rotation_about(x, box[3])), fixed);
-  return result;
-}
-
-LegBounds::Drive LegBounds::solve(const Row& row, const PoseBox& box, const Turned& turn,
-                                  const Mask& wanted, std::vector<LimitBound>* bounds) const {
-  Drive drive;
-  drive.arm = turned(turn.rotation, row.arm);
-  IntervalVector v;
-  for (int i = 0; i < 3; ++i) v[i] = drive.arm[i] + box[i] - row.base[i];
-  std::array<IntervalVector, 3> swing;
-  for (int k = 0; k < 3; ++k)
-    if (turn.varies[k]) swing[k] = cross(turn.axes[k], drive.arm);
-  /// Fills a limit from its value and its derivative by v.
-  const auto set = [&](std::size_t limit, const Interval& value, const IntervalVector& by_v) {
-    LimitBound& bound = (*bounds)[limit];
-    bound.value = value;
-    for (int i = 0; i < 3; ++i) bound.gradient[i] = by_v[i];
-    for (int k = 0; k < 3; ++k)
-      bound.gradient[3 + k] = turn.varies[k] ? dot(by_v, swing[k]) : Interval(0.0);
-  };
-  const auto asked = [&](std::size_t limit) {
-    return bounds != nullptr && limit < kMost && wanted[limit];
-  };
-
-  const Vector3& g = row.leg.direction;
-  IntervalVector rod;  // from base to platform
-  Interval rise(0.0);
-  IntervalVector across;
-  if (row.leg.kind == Leg::Kind::guide_rod) {
-    const Interval along = dot(v, g);
-    for (int i = 0; i < 3; ++i) across[i] = v[i] - along * g[i];
-    const Interval left = square(row.length) - squared_norm(across);
-    rise = row.leg.side * root(left);
-    if (asked(row.reach)) {
-      set(row.reach, -left, {2.0 * across[0], 2.0 * across[1], 2.0 * across[2]});
-    }
-    drive.place = along + rise;
-    const bool smooth = left.lower() > 0;
-    for (int i = 0; i < 3; ++i) {
-      drive.row[i] = smooth ? g[i] - across[i] / rise : kAnything;
-      rod[i] = across[i] - rise * g[i];
-      drive.along[i] = -row.leg.side * rod[i] / row.length;
-    }
-  } else {
-    const Interval distance = root(squared_norm(v));
-    if (asked(row.reach)) set(row.reach, -distance, {kAnything, kAnything, kAnything});
-    drive.place = distance - row.length;
-    for (int i = 0; i < 3; ++i) {
-      drive.row[i] = distance.lower() > 0 ? common(v[i] / distance, Interval(-1, 1)) : kAnything;
-      rod[i] = v[i];
-      drive.along[i] = v[i] / row.length;
-    }
-  }
-  if (asked(row.min)) {
-    set(row.min, (row.leg.stroke.min - Interval(kSlack)) - drive.place,
-        {-drive.row[0], -drive.row[1], -drive.row[2]});
-  }
-  if (asked(row.max))
-    set(row.max, drive.place - (row.leg.stroke.max + Interval(kSlack)), drive.row);
-
-  for (const Cone& cone : row.cones) {
-    if (!asked(cone.limit)) continue;
-    IntervalVector axis = vector_of(cone.axis);
-    if (cone.on_platform) axis = turned(turn.rotation, axis);
-    // cos(limit)·|rod| - axis·rod <= 0.
-    IntervalVector by_v;
-    Interval value;
-    if (row.leg.kind == Leg::Kind::guide_rod) {
-      value = cone.cosine * row.length - dot(axis, rod);
-      const Interval lean = dot(axis, g);
-      for (int i = 0; i < 3; ++i) {
-        const bool smooth = drive.row[i].upper() < infinity();
-        by_v[i] = smooth ? -(axis[i] - lean * drive.row[i]) : kAnything;
-      }
-    } else {
-      value = cone.cosine * (drive.place + row.length) - dot(axis, rod);
-      for (int i = 0; i < 3; ++i) by_v[i] = cone.cosine * drive.row[i] - axis[i];
-    }
-    set(cone.limit, value, by_v);
-    if (!cone.on_platform) continue;
-    for (int k = 0; k < 3; ++k)
-      if (turn.varies[k])
-        (*bounds)[cone.limit].gradient[3 + k] -= dot(cross(turn.axes[k], axis), rod);
-  }
-  return drive;
 }
 
 void LegBounds::enclose(const PoseBox& box, const Mask& wanted,
@@ -287,13 +176,14 @@ LegBounds::MovingRows LegBounds::moving_rows(const PoseBox& box) const {
             axes_[k] < 3 ? force[axes_[k]] : moment[axes_[k] - 3] / characteristic_length_;
     };
     put(result.rows, drive.along);
-    // A rod is v - place·g, a strut v; both over the length, on a guide with the sign of -side.
+    // A strut is v, a rod changes with its base joint, too; over the length, a rod with the sign of
+    // -side.
     const bool strut = row.leg.kind == Leg::Kind::strut;
     for (int j = 0; j < 3; ++j) {
       IntervalVector rate;
       for (int i = 0; i < 3; ++i) {
         rate[i] = Interval(i == j ? 1.0 : 0.0);
-        if (!strut) rate[i] = -row.leg.side * (rate[i] - row.leg.direction[i] * drive.row[j]);
+        if (!strut) rate[i] = -row.leg.side * (rate[i] - drive.speed[i] * drive.row[j]);
         rate[i] /= row.length;
       }
       put(result.rates[j], rate);

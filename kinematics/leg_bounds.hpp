@@ -27,7 +27,8 @@ struct LimitBound {
 ///
 /// Gradients are closed forms: with v from a rod's carriage joint at home to its platform joint, p
 /// its part across the guide g, h = sqrt(L² - p²): the drive is v·g + side·h and changes with g -
-/// side·p/h; v changes with t, and with the angles by w × arm.
+/// side·p/h; v changes with t, and with the angles by w × arm. A rod n on a crank, whose end moves
+/// with e per angle: the angle solves A cos θ + B sin θ = C and changes with n/(n·e).
 class LegBounds {
  public:
   static constexpr std::size_t kMost = 256;
@@ -78,8 +79,10 @@ class LegBounds {
   struct Row {
     Leg leg;
     bool primary;
-    IntervalVector arm, base;  // arm from the tool, base joint from the tool
+    IntervalVector arm, base;  // platform joint, base joint (of a crank its centre) from the tool
     Interval length;
+    Interval radius;                 // of a crank, with the unit vectors from its centre
+    IntervalVector outward, onward;  // to the rod's joint at home, and the way that it goes
     std::size_t reach = 0, min = kMost, max = kMost;
     std::vector<Cone> cones;
   };
@@ -105,11 +108,18 @@ class LegBounds {
     std::array<bool, 3> varies{};
   };
   struct Moved;
+  /// A rod or strut solved for its drive, on all of a box.
   struct Drive {
     Interval place;
-    IntervalVector row;    // derivative of place by the joint's position
+    IntervalVector row;    // derivative of place by the joint's position; unbounded unless smooth
     IntervalVector along;  // the same times a positive number, always bounded
-    IntervalVector arm;
+    IntervalVector rod;    // from base to platform joint
+    IntervalVector speed;  // of the base joint, per drive
+    IntervalRotation turn = no_rotation();  // of a crank
+    Interval reach;                         // <= 0 where it reaches, with its derivative
+    IntervalVector reach_row;
+    bool smooth = false;
+    IntervalVector arm;  // from the tool to the platform joint
   };
 
   /// [m, rad] as in LegKernel: a pose on its limit is allowed.
@@ -125,6 +135,22 @@ class LegBounds {
   IntervalMatrix matrix(const PoseBox& box, bool scaled) const;
   Drive solve(const Row& row, const PoseBox& box, const Turned& turned, const Mask& wanted,
               std::vector<LimitBound>* bounds) const;
+  /// @param v from the base joint at home, or a crank's centre, to the platform joint
+  static Drive drive_of_guide(const Row& row, const IntervalVector& v);
+  static Drive drive_of_strut(const Row& row, const IntervalVector& v);
+  static Drive drive_of_crank(const Row& row, const IntervalVector& v);
+  /// What is known of a crank's angle and of A² + B² - C² beforehand.
+  struct CrankKnown {
+    Interval place{-4, 4}, cosine{-1, 1}, sine{-1, 1};
+    Interval left{-std::numeric_limits<double>::infinity(),
+                  std::numeric_limits<double>::infinity()};
+  };
+  static Drive crank_at(const Row& row, const IntervalVector& v, const CrankKnown& known);
+  static std::optional<std::pair<Interval, IntervalVector>> crank_end(
+      const Row& row, const IntervalVector& v, const Drive& drive, const Interval& end, bool most);
+  /// cos(limit)·|rod| - axis·rod <= 0, and its derivative by v.
+  static std::pair<Interval, IntervalVector> lean(const Row& row, const Cone& cone,
+                                                  const Drive& drive, const IntervalVector& axis);
   /// Where bodies are in a box.
   struct Place {
     PoseBox box;

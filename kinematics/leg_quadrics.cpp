@@ -93,6 +93,14 @@ std::vector<QuadricLimit> LegBounds::quadrics(Mask& rest) const {
                   row.length);
   };
   for (const Row& row : rows_) {
+    if (row.leg.kind == Leg::Kind::crank_rod) {
+      // Of higher degree: a torus about the crank's circle, ends of its angle.
+      rest.set(row.reach);
+      for (const std::size_t end : {row.min, row.max})
+        if (end < kMost) rest.set(end);
+      for (const Cone& cone : row.cones) rest.set(cone.limit);
+      continue;
+    }
     const StillRod rod = still(row);
     if (!rod.strut) append(limits, {Interval(-1.0) * rod.left, {}});
     if (row.min < kMost) add_end(limits, rod, false, row.leg.stroke.min - Interval(kSlack));

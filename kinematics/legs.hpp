@@ -31,7 +31,7 @@ struct LegMachine {
   std::vector<int> primary;
 };
 
-/// Whether some drive turns an arm. Interval enclosures exist for guides and struts only.
+/// Whether some drive turns an arm.
 [[nodiscard]] bool has_cranks(const LegMachine& machine);
 
 /// Recognises such a machine; nullopt for any other (then the general solver

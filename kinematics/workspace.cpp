@@ -108,16 +108,17 @@ double sampled_accuracy(const WorkspaceOptions& options) {
 
 /// Puts proved bounds in place of sampled ones, where there is a proof.
 void certify(Workspace& result, const Machine& machine, const WorkspaceOptions& options,
-             const Region& region, const Bounds& reach) {
+             const Bounds& reach, bool singular_too) {
   constexpr double kOfAccuracy = 2;  // bounds as wide as the volume is uncertain to either side
   const double tolerance = std::max(kOfAccuracy * sampled_accuracy(options), 1e-4);
   // Bounds made by clearances close slowly; where they stay wide, sampled ones say more.
   constexpr double kWidest = 0.05;
   constexpr int kBudget = 600000, kBudgetOfClearances = 20000;
   const bool clearances = !watched_pairs(machine.model.mechanism, options.ignored).empty();
-  const auto proved = certify_volume(machine, options.ignored, options.rotation, reach, tolerance,
-                                     clearances ? kBudgetOfClearances : kBudget);
-  if (!proved || region.empty) return;
+  const auto proved =
+      certify_volume(machine, options.ignored, options.rotation, reach, singular_too, tolerance,
+                     clearances ? kBudgetOfClearances : kBudget);
+  if (!proved) return;
   if (clearances && proved->upper - proved->lower > kWidest * proved->upper) return;
   result.certified = true;
   result.volume_lower = proved->lower;
@@ -215,14 +216,16 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
                  measure_region(probe, region, fineness, sampled_accuracy(options)));
     const Boundary boundary = find_boundary(probe, region, fineness.bisections);
     result.limits_hit = boundary.limits;
-    if (one && !crosses && !options.volume_only && probe.dimensions() == 3)
-      certify(result, evaluator.machine(), options, region, search_bounds(probe));
+    if (one && !options.volume_only && probe.dimensions() == 3)
+      certify(result, evaluator.machine(), options, search_bounds(probe), crosses);
     result.lower = boundary.extent.lower;
     result.upper = boundary.extent.upper;
     if (!options.volume_only)
       result.slices = make_slices(probe, region, boundary.extent, options.slices);
   }
   if (one && !options.volume_only) measure_by_quadrature(result, probe, region, options);
+  if (result.singular_throughout && probe.dimensions() == 3)
+    certify(result, evaluator.machine(), options, search_bounds(probe), true);
   if (!region.empty && (!options.volume_only || options.box || options.cylinder)) {
     const Inscriber inscriber(probe, region);
     if (!options.volume_only) inscribe(result, probe, inscriber);

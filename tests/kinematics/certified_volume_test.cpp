@@ -16,12 +16,12 @@ using namespace polyglide::fixtures;
 
 std::optional<CertifiedVolume> proved(const Machine& machine, double tolerance,
                                       const std::vector<std::string>& ignored = {},
-                                      int budget = 1000000) {
+                                      int budget = 1000000, bool singular_too = false) {
   const Evaluator evaluator(machine, ignored);
   const Probe probe(evaluator, Eigen::Quaterniond::Identity());
   const auto start = std::chrono::steady_clock::now();
   const auto result = certify_volume(evaluator.machine(), ignored, Eigen::Quaterniond::Identity(),
-                                     search_bounds(probe), tolerance, budget);
+                                     search_bounds(probe), singular_too, tolerance, budget);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (result)
@@ -60,7 +60,7 @@ TEST(CertifiedVolume, TakesFewCellsForAThousandth) {
 }
 
 TEST(CertifiedVolume, EnclosesWhatQuadratureFindsOnCatalogMachines) {
-  for (const char* name : {"linear-delta", "triglide"}) {
+  for (const char* name : {"linear-delta", "triglide", "3-ruu"}) {
     const Machine machine = catalog_machine(name);
     const Workspace workspace = compute_workspace(machine);
     const auto dut = proved(machine, 1e-3);
@@ -110,7 +110,7 @@ double sampled_volume(const Machine& machine) {
 }
 
 TEST(CertifiedVolume, HoldsWhatSamplingFindsOnCatalogMachines) {
-  for (const char* name : {"tripod-70", "hexapod-6ups", "table1-2", "table1-6"}) {
+  for (const char* name : {"tripod-70", "hexapod-6ups", "table1-2", "table1-6", "delta", "hexa"}) {
     const Machine machine = catalog_machine(name);
     const auto dut = proved(machine, 2e-2, {}, 60000);
     if (!dut) {
@@ -126,17 +126,34 @@ TEST(CertifiedVolume, HoldsWhatSamplingFindsOnCatalogMachines) {
 
 TEST(CertifiedVolume, HoldsWhatSamplingFindsOfRandomMachines) {
   std::mt19937_64 random(29);
-  int compared = 0;
-  for (int trial = 0; trial < 120; ++trial) {
-    const Machine machine = random_machine(random, trial % 2 == 0);
-    const auto dut = proved(machine, 5e-3, {}, 200000);
+  constexpr std::array kKinds{DriveKind::guide, DriveKind::strut, DriveKind::crank};
+  std::array<int, 3> compared{};
+  for (int trial = 0; trial < 180; ++trial) {
+    const Machine machine = random_machine(random, kKinds[trial % 3]);
+    const auto dut = proved(machine, 5e-3, {}, 60000);
     if (!dut) continue;  // home outside
     const double sampled = sampled_volume(machine);
     EXPECT_LE(dut->lower, sampled * 1.02) << trial;
     EXPECT_GE(dut->upper, sampled * 0.98) << trial;
-    ++compared;
+    ++compared[trial % 3];
   }
-  EXPECT_GT(compared, 5);
+  for (const int count : compared) EXPECT_GT(count, 4);
+}
+
+// Both platforms are singular wherever they are: what is left is where the struts reach.
+TEST(CertifiedVolume, CountsSingularPlacesWhereAsked) {
+  for (const char* name : {"wren-platform", "griffis-duffy", "table1-2"}) {
+    const Machine machine = catalog_machine(name);
+    EXPECT_FALSE(proved(machine, 1e-3)) << name;
+    const auto dut = proved(machine, 1e-3, {}, 300000, true);
+    ASSERT_TRUE(dut) << name;
+    EXPECT_TRUE(dut->reached) << name;
+    const Workspace workspace = compute_workspace(machine);
+    EXPECT_TRUE(workspace.singular_throughout) << name;
+    EXPECT_TRUE(workspace.certified) << name;
+    EXPECT_LE(dut->lower, workspace.volume + workspace.error) << name;
+    EXPECT_GE(dut->upper, workspace.volume - workspace.error) << name;
+  }
 }
 
 TEST(CertifiedVolume, ABudgetTooSmallLeavesWideBounds) {

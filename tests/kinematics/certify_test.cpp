@@ -59,7 +59,8 @@ TEST(CertifyBox, PrismsAreCertifiedUpToTheirFaces) {
 TEST(CertifyBox, WhatIsCertifiedHoldsAtEverySample) {
   Uniform uniform;
   int certified = 0, failed = 0;
-  for (const char* name : {"delta-1", "tripod-70", "table1-6", "hexapod-6ups"}) {
+  for (const char* name :
+       {"delta-1", "tripod-70", "table1-6", "hexapod-6ups", "delta", "4-ruu", "hexa"}) {
     const Machine machine = catalog_machine(name);
     const Evaluator evaluator(machine);
     for (int i = 0; i < 6; ++i) {

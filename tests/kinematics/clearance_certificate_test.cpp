@@ -52,6 +52,15 @@ TEST(ClearanceCertificates, AreHonestForTelescopesOfATurnedPlatform) {
                              0.2, 0.01, 0.01);
 }
 
+TEST(ClearanceCertificates, AreHonestForCranks) {
+  expect_honest_certificates(with("delta", R"({
+    "shapes": [{"of": "leg*.arm", "diameter": 50}, {"of": "leg*.rod_*", "diameter": 12, "trim": 30},
+               {"of": "platform", "diameter": 26}],
+    "limits": [{"name": "apart", "clearance": 45},
+               {"name": "plate", "clearance": 550, "between": ["leg*.arm", "platform"]}]})"),
+                             0.25, 0.02, 0);
+}
+
 TEST(ClearanceCertificates, SayWhatTheyCannotEnclose) {
   const Machine machine = with("delta-1", R"({"limits": [
     {"name": "low", "expression": "z", "max": 1000}]})");

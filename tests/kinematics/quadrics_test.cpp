@@ -110,7 +110,8 @@ TEST(Quadrics, SayWhatTheEvaluatorSaysOfRandomMachines) {
   std::mt19937_64 random(11);
   int inside = 0, outside = 0;
   for (int trial = 0; trial < 60; ++trial) {
-    const Machine machine = random_machine(random, trial % 2 == 0);
+    const Machine machine =
+        random_machine(random, trial % 2 == 0 ? DriveKind::strut : DriveKind::guide);
     ASSERT_TRUE(machine.legs);
     const Evaluator evaluator(machine);
     PoseBatch batch;
