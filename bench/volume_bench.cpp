@@ -16,7 +16,7 @@ void prove(benchmark::State& state, const std::string& name, double tolerance) {
   const Eigen::Quaterniond home = Eigen::Quaterniond::Identity();
   const Bounds box = search_bounds(Probe(evaluator, home));
   for (auto _ : state) {
-    const auto proved = certify_volume(evaluator.machine(), {}, home, box, false, tolerance);
+    const auto proved = certify_volume(evaluator.machine(), {}, home, box, {}, tolerance);
     if (!proved || !proved->reached) throw std::logic_error("volume_bench: nothing proved");
     state.counters["cells"] = proved->cells;
   }

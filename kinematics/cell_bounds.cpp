@@ -76,6 +76,10 @@ class CellJudge::Tally {
 CellJudge::CellJudge(const LegBounds& limits, std::optional<int> side)
     : limits_(limits), side_(side), quadrics_(limits.quadrics(rest_)) {}
 
+void CellJudge::end_at(const SingularWall& wall) {
+  append(quadrics_, {as_quadric({Interval(-wall.offset), vector_of(wall.normal)}), {}});
+}
+
 CellBounds CellJudge::unknown() const {
   CellBounds cell;
   for (std::size_t i = 0; i < quadrics_.size(); ++i) cell.quadrics.set(i);

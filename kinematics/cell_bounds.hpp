@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kinematics/region.hpp"
 #include "kinematics/singular_face.hpp"
 
 namespace polyglide {
@@ -16,12 +17,12 @@ inline constexpr int kMarks = 14;
 
 /// What is known of a box of places.
 struct CellBounds {
-  std::bitset<2 * LegBounds::kMost> quadrics;  ///< limits not proved to hold on all of it
-  LegBounds::Mask rest;                        ///< the same of those that are no quadrics
-  bool regular = false;                        ///< det J proved to have home's sign
-  bool inside = false;                         ///< wholly
-  double lower = 0, upper = 1;                 ///< part of it that is inside
-  unsigned marks = 0;                          ///< those in the convex piece proved inside
+  std::bitset<2 * LegBounds::kMost + 1> quadrics;  ///< limits not proved to hold on all of it
+  LegBounds::Mask rest;                            ///< the same of those that are no quadrics
+  bool regular = false;                            ///< det J proved to have home's sign
+  bool inside = false;                             ///< wholly
+  double lower = 0, upper = 1;                     ///< part of it that is inside
+  unsigned marks = 0;                              ///< those in the convex piece proved inside
 };
 
 /// Bounds what of a box belongs to the workspace at one orientation: limits and the singular face
@@ -32,6 +33,9 @@ class CellJudge {
   /// @param side sign of det J that counts; 0 where J is not square; null where singular poses
   /// belong to the workspace, too
   CellJudge(const LegBounds& limits, std::optional<int> side);
+
+  /// What lies beyond the wall is out.
+  void end_at(const SingularWall& wall);
 
   /// Nothing known.
   [[nodiscard]] CellBounds unknown() const;

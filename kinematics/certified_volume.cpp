@@ -10,8 +10,8 @@ namespace {
 /// Boxes of places, split where their bounds are widest.
 class Octree {
  public:
-  Octree(const LegBounds& limits, const Bounds& box, std::optional<int> side, bool holds_all)
-      : box_(box), judge_(limits, side), holds_all_(holds_all) {}
+  Octree(const CellJudge& judge, const Bounds& box, bool holds_all)
+      : box_(box), judge_(judge), holds_all_(holds_all) {}
 
   std::optional<CertifiedVolume> run(double tolerance, int budget) {
     std::vector<OctreeCell> start{{0, {}, judge_.unknown()}};
@@ -158,7 +158,7 @@ class Octree {
   }
 
   OctreeBox box_;
-  CellJudge judge_;
+  const CellJudge& judge_;
   bool holds_all_;
   int examined_ = 0;
   std::vector<OctreeCell> cells_;
@@ -182,7 +182,8 @@ std::optional<int> side_of_home(const Machine& machine, const std::vector<std::s
 std::optional<CertifiedVolume> certify_volume(const Machine& machine,
                                               const std::vector<std::string>& ignored,
                                               const Eigen::Quaterniond& rotation, const Bounds& box,
-                                              bool singular_too, double tolerance, int budget) {
+                                              const SingularPlaces& singular, double tolerance,
+                                              int budget) {
   if (machine.task.translations != 3) return std::nullopt;
   const auto asked = coordinates_of({Vector3::Zero(), rotation.normalized()});
   for (int axis = 3; axis < 6; ++axis)
@@ -195,7 +196,7 @@ std::optional<CertifiedVolume> certify_volume(const Machine& machine,
     const UpwardRounding rounding;
     limits = LegBounds::make(machine, ignored, rotation, false);
     if (!limits) return std::nullopt;
-    if (!singular_too && !(side = side_of_home(machine, ignored))) return std::nullopt;
+    if (!singular.count && !(side = side_of_home(machine, ignored))) return std::nullopt;
   }
   // A margin, so that what is inside does not touch the box, and uneven, so that faces
   // of the workspace do not lie in faces of cells.
@@ -211,7 +212,9 @@ std::optional<CertifiedVolume> certify_volume(const Machine& machine,
       });
   // Made of intervals, and so under the rounding that they need.
   const UpwardRounding rounding;
-  Octree octree(*limits, roomy, side, limited);
+  CellJudge judge(*limits, side);
+  if (singular.wall) judge.end_at(*singular.wall);
+  Octree octree(judge, roomy, limited);
   return octree.run(tolerance, budget);
 }
 

@@ -12,6 +12,12 @@ struct CertifiedVolume {
   bool reached = false;         ///< upper - lower <= tolerance × upper
 };
 
+/// What singular places mean: whether they belong to the workspace, too, and where it ends at one.
+struct SingularPlaces {
+  bool count = false;
+  std::optional<SingularWall> wall;
+};
+
 /// By interval arithmetic on an octree. A cell is in, out, or crossed by limits; a limit that
 /// crosses is enclosed between two parallel planes (mean value form), whose gap shrinks with the
 /// square of the cell, and the volumes cut off by planes are closed forms. Cells with the widest
@@ -19,14 +25,14 @@ struct CertifiedVolume {
 /// joined for the lower bound only through points proved inside, and separated for the upper
 /// bound only by cells proved outside.
 /// nullopt where nothing can be proved: no closed form, fewer than three translations, home
-/// outside or singular (but where `singular_too`), or a workspace that the search box does not
-/// hold.
-/// Poses are meant without rounding of the rotation; the slack of 1e-9 m at limits is the
-/// evaluator's.
+/// outside or singular (but where singular places count), or a workspace that the search box does
+/// not hold. A wall is taken as given. Poses are meant without rounding of the rotation; the slack
+/// of 1e-9 m at limits is the evaluator's.
 [[nodiscard]] std::optional<CertifiedVolume> certify_volume(const Machine& machine,
                                                             const std::vector<std::string>& ignored,
                                                             const Eigen::Quaterniond& rotation,
-                                                            const Bounds& box, bool singular_too,
+                                                            const Bounds& box,
+                                                            const SingularPlaces& singular,
                                                             double tolerance, int budget = 600000);
 
 }  // namespace polyglide

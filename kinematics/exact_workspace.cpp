@@ -86,7 +86,8 @@ void measure_by_quadrature(Workspace& workspace, const Probe& probe, const Regio
   const auto inside = well_inside(region, *limits);
   if (!inside) return;
   LineLimits usable = *limits;
-  const bool sided = probe.side() != 0 && usable.keep_side_of(*inside);
+  const bool sided = (probe.side() != 0 && usable.keep_side_of(*inside)) || probe.wall();
+  if (probe.wall()) usable.keep_before(*probe.wall());
   const Bounds lines = lines_around(region, *limits);
   const auto exact = measure_exactly(usable, *inside, lines, size, search);
   const double lower = flat ? workspace.area_lower : workspace.volume_lower;

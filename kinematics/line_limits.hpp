@@ -36,6 +36,11 @@ class LineLimits {
   /// square or singular there.
   bool keep_side_of(const Vector3& place);
 
+  /// Only before a wall.
+  void keep_before(const SingularWall& wall) {
+    planes_.push_back({wall.normal, wall.offset, kSingular});
+  }
+
   /// Ascending, along the line of the given x and y. Cost: 1 to 10 µs.
   void spans(double x, double y, std::vector<Span>& result) const;
 

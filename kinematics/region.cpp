@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kinematics/singular_wall.hpp"
+
 namespace polyglide {
 namespace {
 
@@ -192,7 +194,8 @@ Probe::Answers Probe::ask(PoseBatch poses, bool conditioning) const {
     const bool regular = (poses.wanted & Wanted::condition) != 0
                              ? result.inverse_condition[i] > kSingular
                              : result.orientation[i] != 0;
-    if (result.limit[i] < 0 && (across || !regular)) result.limit[i] = singularity();
+    const bool walled = wall_ && wall_->beyond({poses.x[i], poses.y[i], poses.z[i]}) >= 0;
+    if (result.limit[i] < 0 && (across || walled || !regular)) result.limit[i] = singularity();
   }
   return {std::move(result.limit), std::move(result.inverse_condition),
           std::move(result.orientation)};
@@ -241,6 +244,11 @@ Region explore(Probe& probe, const Bounds& box, int nodes) {
   Region region;
   region.grid = make_grid(probe, box, nodes);
   Probe::Answers answers = probe.ask(nodes_of(region.grid));
+  if (!probe.wall())
+    if (const auto wall = find_singular_wall(probe, region.grid, answers)) {
+      probe.set_wall(*wall);
+      answers = probe.ask(nodes_of(region.grid));
+    }
   std::vector<int> sizes;
   const std::vector<int> part = label(region.grid, answers, sizes);
   const int chosen = choose_part(region.grid, part, sizes);

@@ -34,13 +34,22 @@ struct Bounds {
   Vector3 lower = Vector3::Zero(), upper = Vector3::Zero();
 };
 
+/// A plane beyond which nothing belongs to the workspace, because J is singular on it.
+struct SingularWall {
+  Vector3 normal = Vector3::Zero();  ///< unit, away from home
+  double offset = 0;                 ///< [m]
+  /// How far a place lies beyond it [m].
+  [[nodiscard]] double beyond(const Vector3& place) const { return normal.dot(place) - offset; }
+};
+
 /// Told how many poses were asked so far, from the thread that asks.
 using PoseCounter = std::function<void(std::size_t poses)>;
 
 /// Asks an evaluator about tool places at one orientation or at all of a set, and counts; asking
 /// is safe from several threads. A place
 /// belongs to the workspace when no limit stops it and no singular surface
-/// separates it from home: for square J the sign of det J is home's, and 1/κ > 1e-6.
+/// separates it from home: for square J the sign of det J is home's, and 1/κ > 1e-6. Where det J
+/// touches zero and keeps its sign a wall separates, once one was found and set.
 class Probe {
  public:
   Probe(const Evaluator& evaluator, const Eigen::Quaterniond& rotation);
@@ -72,6 +81,11 @@ class Probe {
   [[nodiscard]] int side() const { return side_; }
   void set_side(int side) { side_ = side; }
 
+  /// Whether singular surfaces are a limit and have two sides.
+  [[nodiscard]] bool sides() const { return square_ && !crosses_; }
+  [[nodiscard]] const std::optional<SingularWall>& wall() const { return wall_; }
+  void set_wall(const SingularWall& wall) { wall_ = wall; }
+
   /// From now on singular surfaces are no limit.
   void cross_singularities() {
     crosses_ = true;
@@ -98,9 +112,10 @@ class Probe {
   std::optional<Bounds> reach_;
   std::vector<std::string> names_;
   std::array<bool, 3> active_{};
-  bool square_ = false;  ///< as many drives as task axes
+  bool square_ = false;   ///< as many drives as task axes
   bool crosses_ = false;  ///< singular surfaces are no limit
   int side_ = 0;
+  std::optional<SingularWall> wall_;
   mutable std::atomic<std::size_t> poses_ = 0;
 };
 

@@ -43,6 +43,9 @@ struct Singularity {
 [[nodiscard]] Singularity singularity_at(const Machine& machine, const Posture& posture,
                                          int mobility, double singular = 1e-6);
 
+/// The smaller of both margins.
+[[nodiscard]] double smaller_margin(const Machine& machine, const Posture& posture);
+
 /// "regular", or the kinds in words: "direct (type II)", "inverse (type I)", "constraint".
 [[nodiscard]] std::string singularity_name(const Singularity& singularity);
 
@@ -64,8 +67,7 @@ struct PathSingularities {
 };
 
 /// Follows the way from home's branch and reports where the sign of the Jacobian's determinant
-/// changes or a margin falls to zero. Square task Jacobians only change sign; for others
-/// the margins are looked at.
+/// changes, or where a margin falls to zero and rises again without.
 /// @param samples postures looked at; crossings between them are bisected to 1e-9 of the way
 [[nodiscard]] PathSingularities singularities_on_path(const Machine& machine, const Pose& from,
                                                       const Pose& to, int samples = 100);

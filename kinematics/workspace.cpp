@@ -108,16 +108,19 @@ double sampled_accuracy(const WorkspaceOptions& options) {
 
 /// Puts proved bounds in place of sampled ones, where there is a proof.
 void certify(Workspace& result, const Machine& machine, const WorkspaceOptions& options,
-             const Bounds& reach, bool singular_too) {
+             const Bounds& reach, const SingularPlaces& singular) {
   constexpr double kOfAccuracy = 2;  // bounds as wide as the volume is uncertain to either side
   const double tolerance = std::max(kOfAccuracy * sampled_accuracy(options), 1e-4);
   // Bounds made by clearances close slowly; where they stay wide, sampled ones say more.
   constexpr double kWidest = 0.05;
-  constexpr int kBudget = 600000, kBudgetOfClearances = 20000;
+  // So do those at a wall, near which two singular values vanish.
+  constexpr int kBudget = 600000, kBudgetAtWall = 200000, kBudgetOfClearances = 20000;
   const bool clearances = !watched_pairs(machine.model.mechanism, options.ignored).empty();
   const auto proved =
-      certify_volume(machine, options.ignored, options.rotation, reach, singular_too, tolerance,
-                     clearances ? kBudgetOfClearances : kBudget);
+      certify_volume(machine, options.ignored, options.rotation, reach, singular, tolerance,
+                     clearances      ? kBudgetOfClearances
+                     : singular.wall ? kBudgetAtWall
+                                     : kBudget);
   if (!proved) return;
   if (clearances && proved->upper - proved->lower > kWidest * proved->upper) return;
   result.certified = true;
@@ -217,7 +220,7 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
     const Boundary boundary = find_boundary(probe, region, fineness.bisections);
     result.limits_hit = boundary.limits;
     if (one && !options.volume_only && probe.dimensions() == 3)
-      certify(result, evaluator.machine(), options, search_bounds(probe), crosses);
+      certify(result, evaluator.machine(), options, search_bounds(probe), {crosses, probe.wall()});
     result.lower = boundary.extent.lower;
     result.upper = boundary.extent.upper;
     if (!options.volume_only)
@@ -225,7 +228,7 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
   }
   if (one && !options.volume_only) measure_by_quadrature(result, probe, region, options);
   if (result.singular_throughout && probe.dimensions() == 3)
-    certify(result, evaluator.machine(), options, search_bounds(probe), true);
+    certify(result, evaluator.machine(), options, search_bounds(probe), {true, {}});
   if (!region.empty && (!options.volume_only || options.box || options.cylinder)) {
     const Inscriber inscriber(probe, region);
     if (!options.volume_only) inscribe(result, probe, inscriber);

@@ -21,7 +21,7 @@ std::optional<CertifiedVolume> proved(const Machine& machine, double tolerance,
   const Probe probe(evaluator, Eigen::Quaterniond::Identity());
   const auto start = std::chrono::steady_clock::now();
   const auto result = certify_volume(evaluator.machine(), ignored, Eigen::Quaterniond::Identity(),
-                                     search_bounds(probe), singular_too, tolerance, budget);
+                                     search_bounds(probe), {singular_too, {}}, tolerance, budget);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (result)
