@@ -64,6 +64,7 @@ class Octree {
         continue;
       }
       for (int part = 0; part < 8; ++part) {
+        if (is_beside(part)) continue;
         OctreeCell& child = children.emplace_back(cell);
         child.level = cell.level + 1;
         for (int k = 0; k < 3; ++k) child.at[k] = 2 * cell.at[k] + (part >> k & 1);
@@ -76,9 +77,19 @@ class Octree {
     return true;
   }
 
-  static bool touches_box(const OctreeCell& cell) {
+  /// Parts of a cell that are none, because the box is flat there.
+  bool is_beside(int part) const {
     for (int k = 0; k < 3; ++k)
-      if (cell.at[k] == 0 || cell.at[k] == (1 << cell.level) - 1) return true;
+      if ((part >> k & 1) && box_.is_flat(k)) return true;
+    return false;
+  }
+
+  bool touches_box(const OctreeCell& cell) const {
+    for (int k = 0; k < 3; ++k)
+      if (box_.is_flat(k))
+        continue;
+      else if (cell.at[k] == 0 || cell.at[k] == (1 << cell.level) - 1)
+        return true;
     return false;
   }
 
@@ -148,7 +159,8 @@ class Octree {
       if (!holds_all_ && touches_box(cell)) return false;
       const PoseBox box = box_.box_of(cell);
       Interval size(1.0);
-      for (int k = 0; k < 3; ++k) size *= Interval(box[k].upper()) - box[k].lower();
+      for (int k = 0; k < 3; ++k)
+        if (!box_.is_flat(k)) size *= Interval(box[k].upper()) - box[k].lower();
       upper += cell.known.upper * size;
       if (cell.known.lower > 0 && parts.surely_with_home(i)) lower += cell.known.lower * size;
     }
@@ -184,12 +196,11 @@ std::optional<CertifiedVolume> certify_volume(const Machine& machine,
                                               const Eigen::Quaterniond& rotation, const Bounds& box,
                                               const SingularPlaces& singular, double tolerance,
                                               int budget) {
-  if (machine.task.translations != 3) return std::nullopt;
+  if (machine.task.translations < 2) return std::nullopt;
+  const auto commands = [&](int axis) { return std::ranges::count(machine.task.axes, axis) > 0; };
   const auto asked = coordinates_of({Vector3::Zero(), rotation.normalized()});
   for (int axis = 3; axis < 6; ++axis)
-    if (std::abs(asked[axis]) > 1e-9 &&
-        std::count(machine.task.axes.begin(), machine.task.axes.end(), axis) == 0)
-      return std::nullopt;
+    if (std::abs(asked[axis]) > 1e-9 && !commands(axis)) return std::nullopt;
   std::optional<LegBounds> limits;
   std::optional<int> side;
   {
@@ -202,7 +213,8 @@ std::optional<CertifiedVolume> certify_volume(const Machine& machine,
   // of the workspace do not lie in faces of cells.
   Bounds roomy = box;
   const Vector3 size = box.upper - box.lower;
-  if (!size.allFinite() || !(size.minCoeff() > 0)) return std::nullopt;
+  for (int k = 0; k < 3; ++k)
+    if (!std::isfinite(size[k]) || (size[k] > 0) != commands(k)) return std::nullopt;
   roomy.lower -= size.cwiseProduct(Vector3(0.0131, 0.0173, 0.0119));
   roomy.upper += size.cwiseProduct(Vector3(0.0157, 0.0109, 0.0147));
   const bool limited =

@@ -4,10 +4,11 @@
 
 namespace polyglide {
 
-/// Proved bounds of the volume of the workspace: the connected part around home where every
-/// limit holds and, unless singular poses count as well, det J keeps home's sign.
+/// Proved bounds of the volume (area of planar machines) of the workspace: the connected part
+/// around home where every limit holds and, unless singular poses count as well, det J keeps home's
+/// sign.
 struct CertifiedVolume {
-  double lower = 0, upper = 0;  ///< [m³]
+  double lower = 0, upper = 0;  ///< [m³, m²]
   int cells = 0;                ///< examined
   bool reached = false;         ///< upper - lower <= tolerance × upper
 };
@@ -24,7 +25,7 @@ struct SingularPlaces {
 /// bounds are split until `tolerance` [relative] is met or `budget` cells were examined. Parts are
 /// joined for the lower bound only through points proved inside, and separated for the upper
 /// bound only by cells proved outside.
-/// nullopt where nothing can be proved: no closed form, fewer than three translations, home
+/// nullopt where nothing can be proved: no closed form, fewer than two translations, home
 /// outside or singular (but where singular places count), or a workspace that the search box does
 /// not hold. A wall is taken as given. Poses are meant without rounding of the rotation; the slack
 /// of 1e-9 m at limits is the evaluator's.

@@ -44,8 +44,10 @@ bool OctreeBox::holds_home(const OctreeCell& cell) const {
 }
 
 double OctreeBox::volume_of(const OctreeCell& cell) const {
-  const Vector3 size = box_.upper - box_.lower;
-  return std::ldexp(size.prod(), -3 * cell.level);
+  double size = 1;
+  for (int k = 0; k < 3; ++k)
+    if (!is_flat(k)) size *= std::ldexp(box_.upper[k] - box_.lower[k], -cell.level);
+  return size;
 }
 
 OctreeParts::OctreeParts(const OctreeBox& box, const CellJudge& judge,
@@ -102,6 +104,7 @@ void OctreeParts::join_over_faces() {
   for (int i = 0; i < count; ++i)
     for (int axis = 0; axis < 3; ++axis)
       for (int way : {-1, 1}) {
+        if (box_.is_flat(axis)) continue;
         CellPlace step{};
         step[axis] = way;
         neighbour(cells_[i], step, [&](int other) {

@@ -10,19 +10,22 @@ namespace polyglide {
 
 using CellPlace = std::array<int, 3>;
 
-/// One of the 8^level equal boxes of a box.
+/// One of the 8^level equal boxes of a box, or 4^level where the box is flat.
 struct OctreeCell {
   int level = 0;
   CellPlace at{};
   CellBounds known;
 };
 
-/// Where the cells of an octree over a box are.
+/// Where the cells of an octree over a box are. A box without size along an axis is not split along
+/// it (quadtree), and cells have areas for volumes.
 class OctreeBox {
  public:
   static constexpr int kDeepest = 19;
 
   explicit OctreeBox(const Bounds& box) : box_(box) {}
+
+  [[nodiscard]] bool is_flat(int axis) const { return box_.lower[axis] == box_.upper[axis]; }
 
   /// The box of a cell. Neighbours share their rounded corners, so that no place is lost between.
   /// Needs UpwardRounding.

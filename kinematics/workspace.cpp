@@ -123,10 +123,12 @@ void certify(Workspace& result, const Machine& machine, const WorkspaceOptions& 
                                      : kBudget);
   if (!proved) return;
   if (clearances && proved->upper - proved->lower > kWidest * proved->upper) return;
+  const bool flat = machine.task.translations == 2;
+  double& size = flat ? result.area : result.volume;
   result.certified = true;
-  result.volume_lower = proved->lower;
-  result.volume_upper = proved->upper;
-  result.volume = std::clamp(result.volume, proved->lower, proved->upper);
+  (flat ? result.area_lower : result.volume_lower) = proved->lower;
+  (flat ? result.area_upper : result.volume_upper) = proved->upper;
+  size = std::clamp(size, proved->lower, proved->upper);
 }
 
 /// Poses that a workspace takes, about: to say how much of the work is done.
@@ -219,7 +221,7 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
                  measure_region(probe, region, fineness, sampled_accuracy(options)));
     const Boundary boundary = find_boundary(probe, region, fineness.bisections);
     result.limits_hit = boundary.limits;
-    if (one && !options.volume_only && probe.dimensions() == 3)
+    if (one && !options.volume_only)
       certify(result, evaluator.machine(), options, search_bounds(probe), {crosses, probe.wall()});
     result.lower = boundary.extent.lower;
     result.upper = boundary.extent.upper;
@@ -227,7 +229,7 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
       result.slices = make_slices(probe, region, boundary.extent, options.slices);
   }
   if (one && !options.volume_only) measure_by_quadrature(result, probe, region, options);
-  if (result.singular_throughout && probe.dimensions() == 3)
+  if (result.singular_throughout)
     certify(result, evaluator.machine(), options, search_bounds(probe), {true, {}});
   if (!region.empty && (!options.volume_only || options.box || options.cylinder)) {
     const Inscriber inscriber(probe, region);

@@ -72,6 +72,18 @@ TEST(CertifiedVolume, EnclosesWhatQuadratureFindsOnCatalogMachines) {
   }
 }
 
+TEST(CertifiedVolume, EnclosesTheAreaOfPlanarMachines) {
+  for (const char* name : {"3-rrr-planar", "3-prr-planar", "3-rpr-planar", "five-bar"}) {
+    const Workspace dut = compute_workspace(catalog_machine(name));
+    EXPECT_TRUE(dut.certified) << name;
+    EXPECT_EQ(dut.method, "quadrature") << name;
+    EXPECT_LE(dut.area_lower, dut.area) << name;
+    EXPECT_GE(dut.area_upper, dut.area) << name;
+    EXPECT_LT(dut.area_upper - dut.area_lower, 1e-3 * dut.area) << name;
+    EXPECT_EQ(dut.volume_upper, 0) << name;
+  }
+}
+
 TEST(CertifiedVolume, EnclosesTheClosedFormOfALinearDelta) {
   const auto expected = truth()["linear_delta_vertical_e0.25_L1.0_H1.5"]["value"].get<double>();
   const Machine machine = prepare(linear_delta(0.25, 1, 1.5, 0), task_of({0, 1, 2}));
