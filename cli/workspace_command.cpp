@@ -18,18 +18,19 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// "AxBxC" or "A,B,C" in file units to metres.
+/// "AxBxC" or "A,B,C" in file units to metres. @param zeros whether they may be 0
 std::vector<double> read_size(std::string text, const char* option, std::size_t count,
-                              const Units& units) {
+                              const Units& units, bool zeros = false) {
   for (char& letter : text)
     if (letter == 'x') letter = ',';
   std::vector<double> size = parse_numbers(text, option);
-  const bool positive =
-      std::all_of(size.begin(), size.end(), [](double value) { return value > 0; });
-  if (size.size() != count || !positive)
-    throw InputError(
-        {wrong_argument(text, fmt::format("{} takes {} positive lengths, as in {}", option, count,
-                                          count == 3 ? "200x200x100" : "230x170"))});
+  const bool allowed = std::ranges::all_of(
+      size, [zeros](double value) { return value > 0 || (zeros && value == 0); });
+  if (size.size() != count || !allowed)
+    throw InputError({wrong_argument(
+        text, fmt::format("{} takes {} {}, as in {}", option, count,
+                          zeros ? "lengths, 0 where the machine stays" : "positive lengths",
+                          count == 3 ? "200x200x100" : "230x170"))});
   for (double& value : size) value *= units.metres;
   return size;
 }
@@ -38,7 +39,7 @@ std::vector<double> read_size(std::string text, const char* option, std::size_t 
 PoseRegion read_region(const std::string& text, const Units& units) {
   PoseRegion region;
   const std::size_t mark = text.find('@');
-  const auto size = read_size(text.substr(0, mark), "--box", 3, units);
+  const auto size = read_size(text.substr(0, mark), "--box", 3, units, true);
   region.size = Vector3(size[0], size[1], size[2]);
   if (mark == std::string::npos) return region;
   const auto place = parse_numbers(text.substr(mark + 1), "--box");

@@ -62,6 +62,14 @@ TEST(Certainty, ABoxIsCertifiedOrFailsWithAPose) {
   EXPECT_EQ(turned.at("verdict"), "certified");
 }
 
+TEST(Certainty, PlanarMachinesAndCranksAreCertified) {
+  for (const auto& [name, box] : {std::pair{"3-rrr-planar", "10x10x0"}, {"delta", "100x100x50"}}) {
+    const json dut =
+        json::parse(run_polyglide({"workspace", name, "--certify", "--box", box, "--json"}).out);
+    EXPECT_EQ(dut.at("verdict"), "certified") << name << dut;
+  }
+}
+
 TEST(Certainty, NonsenseIsRefused) {
   const auto refused = [](const std::vector<std::string>& arguments, const std::string& message) {
     const ProgramResult dut = run_polyglide(arguments);
@@ -70,7 +78,8 @@ TEST(Certainty, NonsenseIsRefused) {
     EXPECT_TRUE(has(dut.err, message)) << dut.err;
   };
   refused({"workspace", "delta-1", "--certify"}, "--certify needs --box");
-  refused({"workspace", "delta-1", "--certify", "--box", "1,1"}, "--box takes 3 positive lengths");
+  refused({"workspace", "delta-1", "--certify", "--box", "1,1"}, "--box takes 3 lengths");
+  refused({"workspace", "delta-1", "--certify", "--box", "1,-1,1"}, "0 where the machine stays");
   refused({"workspace", "delta-1", "--certify", "--box", "1,1,1@2"}, "three lengths and a place");
   refused({"workspace", "delta-1", "--certify", "--box", "1,1,1@nan,0,0"}, "finite numbers");
   refused({"workspace", "delta-1", "--certify", "--box", "1,1,1", "--tilt", "100"}, "90 degrees");
