@@ -22,7 +22,7 @@ function(polyglide_precompile target kind)
     add_library(${owner} OBJECT ${PROJECT_BINARY_DIR}/${owner}.cpp)
     target_link_libraries(${owner} PRIVATE Eigen3::Eigen nlohmann_json::nlohmann_json polyglide_options
                                            ${links_${kind}})
-    target_precompile_headers(${owner} PRIVATE <Eigen/Dense> <map>
+    target_precompile_headers(${owner} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/eigen_instances.hpp <map>
                                                <nlohmann/json.hpp> <string> <vector> ${headers_${kind}})
     target_compile_options(${owner} PRIVATE ${flags_${kind}})
     get_target_property(relocatable ${target} POSITION_INDEPENDENT_CODE)

@@ -1,0 +1,2 @@
+#define POLYGLIDE_INSTANCE template
+#include "eigen_instances.hpp"
