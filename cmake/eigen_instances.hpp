@@ -16,7 +16,8 @@ POLYGLIDE_INSTANCE SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<Matr
 POLYGLIDE_INSTANCE void PartialPivLU<MatrixXd>::compute();
 POLYGLIDE_INSTANCE LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);
 
-// Products of matrices, by any orders of storage.
+// Products of matrices, by any orders of storage: as version 3.4 makes them.
+#if !EIGEN_VERSION_AT_LEAST(3, 4, 90)
 namespace internal {
 using Blocks = gebp_traits<double, double>;
 template <int Order>
@@ -35,4 +36,5 @@ POLYGLIDE_INSTANCE struct general_matrix_vector_product<Index, double, Source<Co
 POLYGLIDE_INSTANCE struct general_matrix_vector_product<Index, double, Source<RowMajor>, RowMajor,
                                                         false, double, Source<ColMajor>, false>;
 }  // namespace internal
+#endif
 }  // namespace Eigen
