@@ -73,7 +73,7 @@ class CellJudge::Tally {
   bool lost_ = false;
 };
 
-CellJudge::CellJudge(const LegBounds& limits, std::optional<int> side)
+CellJudge::CellJudge(const BoxLimits& limits, std::optional<int> side)
     : limits_(limits), side_(side), quadrics_(limits.quadrics(rest_)) {}
 
 void CellJudge::end_at(const SingularWall& wall) {
@@ -90,6 +90,7 @@ CellBounds CellJudge::unknown() const {
 
 bool CellJudge::judge(const PoseBox& box, CellBounds& cell, std::optional<Vector3>* extra) const {
   Tally tally(cuboid_of(box), cell, extra);
+  cell.branch = limits_.follow(box, cell.branch);
   for (std::size_t i = 0; i < quadrics_.size(); ++i) {
     if (!cell.quadrics[i]) continue;
     const PlaneCut left = cut_of(tally.cuboid(), quadrics_[i]);
@@ -107,10 +108,8 @@ bool CellJudge::judge(const PoseBox& box, CellBounds& cell, std::optional<Vector
 
 bool CellJudge::judge_rest(const PoseBox& box, CellBounds& cell, Tally& tally) const {
   thread_local std::vector<LimitBound> whole, in_middle;
-  PoseBox centre = box;
-  for (int k = 0; k < 3; ++k) centre[k] = Interval(tally.cuboid().middle[k]);
-  limits_.enclose(box, cell.rest, whole);
-  limits_.enclose(centre, cell.rest, in_middle);
+  limits_.enclose(box, cell.rest, whole, cell.branch);
+  limits_.enclose(middle_of(box), cell.rest, in_middle, cell.branch);
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     if (!cell.rest[i]) continue;
     if (whole[i].value.lower() > 0) return false;
@@ -135,7 +134,7 @@ bool CellJudge::judge_rest(const PoseBox& box, CellBounds& cell, Tally& tally) c
 
 /// False when det J has the other sign on all of the cell.
 bool CellJudge::judge_regularity(const PoseBox& box, CellBounds& cell, Tally& tally) const {
-  const IntervalMatrix jacobian = limits_.rod_rows(box);
+  const IntervalMatrix jacobian = limits_.rod_rows(box, cell.branch);
   if (*side_ == 0) {
     cell.regular = singular_value_bounds(jacobian).least_lower > 0;
     if (!cell.regular) tally.give_up();

@@ -17,12 +17,13 @@ inline constexpr int kMarks = 14;
 
 /// What is known of a box of places.
 struct CellBounds {
-  std::bitset<2 * LegBounds::kMost + 1> quadrics;  ///< limits not proved to hold on all of it
-  LegBounds::Mask rest;                            ///< the same of those that are no quadrics
+  std::bitset<2 * BoxLimits::kMost + 1> quadrics;  ///< limits not proved to hold on all of it
+  BoxLimits::Mask rest;                            ///< the same of those that are no quadrics
   bool regular = false;                            ///< det J proved to have home's sign
   bool inside = false;                             ///< wholly
   double lower = 0, upper = 1;                     ///< part of it that is inside
   unsigned marks = 0;                              ///< those in the convex piece proved inside
+  BoxLimits::BranchPointer branch;                 ///< where the joints are
 };
 
 /// Bounds what of a box belongs to the workspace at one orientation: limits and the singular face
@@ -32,7 +33,7 @@ class CellJudge {
  public:
   /// @param side sign of det J that counts; 0 where J is not square; null where singular poses
   /// belong to the workspace, too
-  CellJudge(const LegBounds& limits, std::optional<int> side);
+  CellJudge(const BoxLimits& limits, std::optional<int> side);
 
   /// What lies beyond the wall is out.
   void end_at(const SingularWall& wall);
@@ -50,9 +51,9 @@ class CellJudge {
   bool judge_rest(const PoseBox& box, CellBounds& cell, Tally& tally) const;
   bool judge_regularity(const PoseBox& box, CellBounds& cell, Tally& tally) const;
 
-  const LegBounds& limits_;
+  const BoxLimits& limits_;
   std::optional<int> side_;
-  LegBounds::Mask rest_;
+  BoxLimits::Mask rest_;
   std::vector<QuadricLimit> quadrics_;
 };
 

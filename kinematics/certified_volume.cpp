@@ -10,21 +10,26 @@ namespace {
 /// Boxes of places, split where their bounds are widest.
 class Octree {
  public:
-  Octree(const CellJudge& judge, const Bounds& box, bool holds_all)
-      : box_(box), judge_(judge), holds_all_(holds_all) {}
+  /// @param followed whether cells without a proof are to be left out as soon as others part them
+  /// from home
+  Octree(const CellJudge& judge, const Bounds& box, bool holds_all, bool followed)
+      : box_(box), judge_(judge), holds_all_(holds_all), followed_(followed) {}
 
   std::optional<CertifiedVolume> run(double tolerance, int budget) {
     std::vector<OctreeCell> start{{0, {}, judge_.unknown()}};
     judge(start);
     split_around_home(start);
-    if (!holds_all_) split_along_box(start);
+    if (!holds_all_ && !followed_) split_along_box(start);
     cells_ = std::move(start);
     while (true) {
+      if (followed_ && !leave_strangers()) return std::nullopt;
       const auto [lower, upper] = sums();
       if (upper <= 0) return std::nullopt;
       const double gap = upper - lower, aim = kRoom * tolerance * upper;
       if (gap <= aim || examined_ >= budget) break;
-      if (!split_widest(std::max(gap - aim, gap / 8))) break;
+      // Too much is left for what is left of the budget.
+      if (followed_ && 4 * examined_ >= budget && lower < kHopeless * upper) return std::nullopt;
+      if (!split_widest(std::max(gap - aim, gap / 8), budget - examined_)) break;
     }
     CertifiedVolume result;
     if (!bound_part(result)) return std::nullopt;
@@ -34,6 +39,8 @@ class Octree {
   }
 
  private:
+  static constexpr int kFaceDepth = 6;
+  static constexpr double kHopeless = 0.05;
   static constexpr double kRoom = 0.9;  // what is aimed at: joining parts loses a little
 
   /// Judges all, on all threads; leaves those that are not out, in their order.
@@ -75,6 +82,40 @@ class Octree {
     others.insert(others.end(), children.begin(), children.end());
     cells = std::move(others);
     return true;
+  }
+
+  /// Whether a face of the cell that is in the box's own is not proved to be out.
+  bool escapes(const OctreeCell& cell) const {
+    const PoseBox box = box_.box_of(cell);
+    for (int k = 0; k < 3; ++k)
+      for (const bool upper : {false, true}) {
+        if (box_.is_flat(k) || cell.at[k] != (upper ? (1 << cell.level) - 1 : 0)) continue;
+        PoseBox face = box;
+        face[k] = Interval(upper ? box[k].upper() : box[k].lower());
+        if (leaves_something(face, cell.known, kFaceDepth)) return true;
+      }
+    return false;
+  }
+
+  /// Of a face, in at most 4^depth parts.
+  bool leaves_something(const PoseBox& face, const CellBounds& known, int depth) const {
+    CellBounds here = known;
+    if (!judge_.judge(face, here)) return false;
+    if (depth == 0) return true;
+    for (int part = 0; part < 8; ++part) {
+      PoseBox piece = face;
+      bool twice = false;
+      for (int k = 0; k < 3; ++k) {
+        const double cut = middle(face[k]);
+        const bool high = part >> k & 1;
+        if (face[k].lower() == face[k].upper())
+          twice = twice || high;
+        else
+          piece[k] = high ? Interval(cut, face[k].upper()) : Interval(face[k].lower(), cut);
+      }
+      if (!twice && leaves_something(piece, here, depth - 1)) return true;
+    }
+    return false;
   }
 
   /// Parts of a cell that are none, because the box is flat there.
@@ -126,9 +167,9 @@ class Octree {
     return {lower, upper};
   }
 
-  /// Splits the cells with the widest bounds, enough to hold most of `excess`. False when none can
-  /// be split.
-  bool split_widest(double excess) {
+  /// Splits the cells with the widest bounds, enough to hold most of `excess` or to make `most`
+  /// new ones. False when none can be split.
+  bool split_widest(double excess, int most) {
     std::vector<std::pair<double, std::size_t>> gaps;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       const double gap = gap_of(cells_[i]);
@@ -140,11 +181,23 @@ class Octree {
     std::vector<char> chosen(cells_.size(), 0);
     double sum = 0;
     for (const auto& [gap, cell] : gaps) {
-      if (sum > excess) break;
+      if (sum > excess || most <= 0) break;
       sum += gap;
+      most -= 8;
       chosen[cell] = 1;
     }
     return split(cells_, [&](std::size_t i) { return chosen[i] != 0; });
+  }
+
+  /// Leaves out what belongs to other parts; false when there is no home.
+  bool leave_strangers() {
+    OctreeParts parts(box_, judge_, cells_, false);
+    if (parts.home() < 0) return false;
+    std::vector<OctreeCell> kept;
+    for (int i = 0; i < static_cast<int>(cells_.size()); ++i)
+      if (parts.perhaps_with_home(i)) kept.push_back(std::move(cells_[i]));
+    cells_ = std::move(kept);
+    return true;
   }
 
   /// Bounds of the part around home; false when it cannot be told.
@@ -156,7 +209,7 @@ class Octree {
     for (int i = 0; i < static_cast<int>(cells_.size()); ++i) {
       const OctreeCell& cell = cells_[i];
       if (!parts.perhaps_with_home(i)) continue;
-      if (!holds_all_ && touches_box(cell)) return false;
+      if (!holds_all_ && (followed_ ? escapes(cell) : touches_box(cell))) return false;
       const PoseBox box = box_.box_of(cell);
       Interval size(1.0);
       for (int k = 0; k < 3; ++k)
@@ -171,18 +224,18 @@ class Octree {
 
   OctreeBox box_;
   const CellJudge& judge_;
-  bool holds_all_;
+  bool holds_all_, followed_;
   int examined_ = 0;
   std::vector<OctreeCell> cells_;
 };
 
 /// Sign of det J at home, 0 where J is not square; nullopt where home is, or may be, singular.
 std::optional<int> side_of_home(const Machine& machine, const std::vector<std::string>& ignored) {
-  const auto limits = LegBounds::make(machine, ignored, Eigen::Quaterniond::Identity(), false);
+  const auto limits = make_box_limits(machine, ignored, Eigen::Quaterniond::Identity(), false);
   if (!limits) return std::nullopt;
   PoseBox home;
   home.fill(Interval(0.0));
-  const IntervalMatrix jacobian = limits->rod_rows(home);
+  const IntervalMatrix jacobian = limits->rod_rows(home, limits->follow(home, nullptr));
   if (jacobian.rows() < jacobian.cols()) return std::nullopt;
   if (jacobian.rows() > jacobian.cols()) return 0;
   const int side = determinant_sign(jacobian);
@@ -196,17 +249,19 @@ std::optional<CertifiedVolume> certify_volume(const Machine& machine,
                                               const Eigen::Quaterniond& rotation, const Bounds& box,
                                               const SingularPlaces& singular, double tolerance,
                                               int budget) {
+  // Joints that hang together by the dozen would take minutes.
+  constexpr double kGreatestEffort = 3000, kWork = 1.6e7;
   if (machine.task.translations < 2) return std::nullopt;
   const auto commands = [&](int axis) { return std::ranges::count(machine.task.axes, axis) > 0; };
   const auto asked = coordinates_of({Vector3::Zero(), rotation.normalized()});
   for (int axis = 3; axis < 6; ++axis)
     if (std::abs(asked[axis]) > 1e-9 && !commands(axis)) return std::nullopt;
-  std::optional<LegBounds> limits;
+  std::unique_ptr<const BoxLimits> limits;
   std::optional<int> side;
   {
     const UpwardRounding rounding;
-    limits = LegBounds::make(machine, ignored, rotation, false);
-    if (!limits) return std::nullopt;
+    limits = make_box_limits(machine, ignored, rotation, false);
+    if (!limits || limits->effort() > kGreatestEffort) return std::nullopt;
     if (!singular.count && !(side = side_of_home(machine, ignored))) return std::nullopt;
   }
   // A margin, so that what is inside does not touch the box, and uneven, so that faces
@@ -217,7 +272,10 @@ std::optional<CertifiedVolume> certify_volume(const Machine& machine,
     if (!std::isfinite(size[k]) || (size[k] > 0) != commands(k)) return std::nullopt;
   roomy.lower -= size.cwiseProduct(Vector3(0.0131, 0.0173, 0.0119));
   roomy.upper += size.cwiseProduct(Vector3(0.0157, 0.0109, 0.0147));
+  const bool followed = limits->effort() > 0;
+  if (followed) budget = std::min(budget, static_cast<int>(kWork / limits->effort()));
   const bool limited =
+      !followed &&
       std::all_of(machine.legs->legs.begin(), machine.legs->legs.end(), [](const Leg& leg) {
         return std::isfinite(leg.stroke.max) &&
                (leg.kind == Leg::Kind::strut || std::isfinite(leg.stroke.min));
@@ -226,7 +284,7 @@ std::optional<CertifiedVolume> certify_volume(const Machine& machine,
   const UpwardRounding rounding;
   CellJudge judge(*limits, side);
   if (singular.wall) judge.end_at(*singular.wall);
-  Octree octree(judge, roomy, limited);
+  Octree octree(judge, roomy, limited, followed);
   return octree.run(tolerance, budget);
 }
 

@@ -24,11 +24,13 @@ struct SingularPlaces {
 /// square of the cell, and the volumes cut off by planes are closed forms. Cells with the widest
 /// bounds are split until `tolerance` [relative] is met or `budget` cells were examined. Parts are
 /// joined for the lower bound only through points proved inside, and separated for the upper
-/// bound only by cells proved outside.
-/// nullopt where nothing can be proved: no closed form, fewer than two translations, home
-/// outside or singular (but where singular places count), or a workspace that the search box does
-/// not hold. A wall is taken as given. Poses are meant without rounding of the rotation; the slack
-/// of 1e-9 m at limits is the evaluator's.
+/// bound only by cells proved outside. Without closed form joints are followed from home
+/// (ClosureBounds), on a budget that shrinks with what that takes.
+/// nullopt where nothing can be proved: limits without enclosure, dozens of joints that hang
+/// together, fewer than two translations, home outside or singular (but where singular places
+/// count), or a workspace that is not proved to be within the search box. A wall is taken as given.
+/// Poses are meant without rounding of the rotation; the slack of 1e-9 m at limits is the
+/// evaluator's.
 [[nodiscard]] std::optional<CertifiedVolume> certify_volume(const Machine& machine,
                                                             const std::vector<std::string>& ignored,
                                                             const Eigen::Quaterniond& rotation,

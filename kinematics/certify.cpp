@@ -7,8 +7,8 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "kinematics/box_limits.hpp"
 #include "kinematics/clearance.hpp"
-#include "kinematics/leg_bounds.hpp"
 #include "kinematics/limits.hpp"
 
 namespace polyglide {
@@ -26,7 +26,8 @@ struct Finding {
 
 struct Part {
   PoseBox box;
-  LegBounds::Mask open;
+  BoxLimits::Mask open;
+  BoxLimits::BranchPointer branch;
   double share = 1;
 };
 
@@ -36,23 +37,18 @@ Pose pose_at(const PoseBox& box) {
   return pose_of(coordinates);
 }
 
-PoseBox middle_of(const PoseBox& box) {
-  PoseBox result;
-  for (int i = 0; i < 6; ++i) result[i] = Interval(middle(box[i]));
-  return result;
-}
-
 class Prover {
  public:
-  Prover(const LegBounds& limits, int side, double condition)
+  Prover(const BoxLimits& limits, int side, double condition)
       : limits_(limits), side_(side), condition_(condition) {}
 
   /// Clears the limits proved to hold in part.open.
   Finding examine(Part& part) const {
     std::vector<LimitBound> whole, centre;
     const PoseBox point = middle_of(part.box);
-    limits_.enclose(part.box, part.open, whole);
-    limits_.enclose(point, part.open, centre);
+    part.branch = limits_.follow(part.box, part.branch);
+    limits_.enclose(part.box, part.open, whole, part.branch);
+    limits_.enclose(point, part.open, centre, part.branch);
     Finding finding;
     std::array<double, 6> blame{};
     for (std::size_t i = 0; i < limits_.size(); ++i) {
@@ -72,30 +68,32 @@ class Prover {
         part.open.reset(i);
         continue;
       }
-      for (int k = 0; k < 6; ++k) blame[k] += std::isfinite(swing[k]) ? swing[k] : 0;
+      // Where nothing is known, the widest edge.
+      const bool known = std::isfinite(value.upper());
+      for (int k = 0; k < 6; ++k)
+        blame[k] += !known ? radius(part.box[k]) : std::isfinite(swing[k]) ? swing[k] : 0;
     }
     const bool within = part.open.none();
-    if (within && regular(part.box, point, finding)) {
+    if (within && regular(part, point, finding)) {
       finding.kind = Finding::Kind::good;
       return finding;
     }
     if (finding.kind == Finding::Kind::broken) return finding;
-    if (within || *std::max_element(blame.begin(), blame.end()) <= 0)
-      blame = jacobian_blame(part.box);
+    if (within || *std::max_element(blame.begin(), blame.end()) <= 0) blame = jacobian_blame(part);
     finding.axis = static_cast<int>(std::max_element(blame.begin(), blame.end()) - blame.begin());
     return finding;
   }
 
  private:
   /// Whether J is regular with home's sign and κ within the bound all over the box.
-  bool regular(const PoseBox& box, const PoseBox& point, Finding& finding) const {
+  bool regular(const Part& part, const PoseBox& point, Finding& finding) const {
     const auto bounds = [&](const PoseBox& where, int& sign) {
-      const IntervalMatrix jacobian = limits_.jacobian(where);
+      const IntervalMatrix jacobian = limits_.jacobian(where, part.branch);
       sign = side_ == 0 ? 0 : determinant_sign(jacobian);
       return singular_value_bounds(jacobian);
     };
     int sign = 0;
-    const SingularValues on_box = bounds(box, sign);
+    const SingularValues on_box = bounds(part.box, sign);
     const bool proved = on_box.least_lower > 0 && sign == side_;
     if (proved) {
       finding.condition = (Interval(on_box.greatest_upper) / on_box.least_lower).upper();
@@ -116,23 +114,24 @@ class Prover {
   }
 
   /// How much the Jacobian changes along each axis of the box.
-  std::array<double, 6> jacobian_blame(const PoseBox& box) const {
+  std::array<double, 6> jacobian_blame(const Part& part) const {
+    const PoseBox& box = part.box;
     std::array<double, 6> blame{};
     for (int k = 0; k < 6; ++k) {
       if (radius(box[k]) == 0) continue;
       PoseBox line = middle_of(box);
       line[k] = box[k];
-      const IntervalMatrix jacobian = limits_.jacobian(line);
+      const IntervalMatrix jacobian = limits_.jacobian(line, part.branch);
       for (int i = 0; i < jacobian.rows(); ++i)
         for (int j = 0; j < jacobian.cols(); ++j) {
           const double width = radius(jacobian(i, j));
-          blame[k] += std::isfinite(width) ? width : 1e6;
+          blame[k] += std::isfinite(width) ? width : 1e6 * radius(box[k]);
         }
     }
     return blame;
   }
 
-  const LegBounds& limits_;
+  const BoxLimits& limits_;
   int side_;
   double condition_;
 };
@@ -148,7 +147,10 @@ std::string no_enclosure(const Machine& machine, const std::vector<std::string>&
     for (const int shape : pair.shapes)
       if (mechanism.shapes[shape].form == BodyShape::Form::mesh)
         return fmt::format("the mesh in \"{}\" cannot be enclosed by intervals", pair.name);
-  return "this machine's inverse kinematics has no closed form that intervals can enclose";
+  if (const auto pairs = watched_pairs(mechanism, ignored); !pairs.empty())
+    return fmt::format("\"{}\" cannot be enclosed by intervals where there is no closed form",
+                       pairs.front().name);
+  return "where this machine's joints are cannot be enclosed by intervals, even at home";
 }
 
 BoxCertificate undecided(const std::string& reason) {
@@ -244,7 +246,10 @@ BoxCertificate certify_box(const Machine& machine, const PoseRegion& region,
     return std::find(axes.begin(), axes.end(), axis) != axes.end();
   };
   for (int k = 0; k < 3; ++k)
-    if (!commanded(k) && machine.task.pure && (region.size[k] > 0 || region.centre[k] != 0)) {
+    if (!commanded(k) && (region.size[k] > 0 || region.centre[k] != 0)) {
+      if (!machine.task.pure)
+        return undecided(
+            fmt::format("{} follows from what this machine can be commanded", "xyz"[k]));
       BoxCertificate result;
       result.verdict = CertifyVerdict::fails;
       result.limit = "motion";
@@ -252,16 +257,16 @@ BoxCertificate certify_box(const Machine& machine, const PoseRegion& region,
       result.reason = fmt::format("the machine cannot move along {}", "xyz"[k]);
       return result;
     }
-  std::optional<LegBounds> limits;
+  std::unique_ptr<const BoxLimits> limits;
   int side = 0;
   Part start;
   {
     const UpwardRounding rounding;
-    limits = LegBounds::make(machine, ignored, Eigen::Quaterniond::Identity(), region.tilt > 0);
+    limits = make_box_limits(machine, ignored, Eigen::Quaterniond::Identity(), region.tilt > 0);
     if (!limits) return undecided(no_enclosure(machine, ignored));
     PoseBox home;
     home.fill(Interval(0.0));
-    const IntervalMatrix jacobian = limits->jacobian(home);
+    const IntervalMatrix jacobian = limits->jacobian(home, limits->follow(home, nullptr));
     if (jacobian.rows() < jacobian.cols()) return undecided("fewer drives than freedoms");
     if (jacobian.rows() == jacobian.cols()) {
       side = determinant_sign(jacobian);
@@ -274,6 +279,10 @@ BoxCertificate certify_box(const Machine& machine, const PoseRegion& region,
       start.box[3 + k] = commanded(3 + k) ? Interval(-region.tilt, region.tilt) : Interval(0.0);
     }
   }
+  // Where joints are followed from box to box, one takes longer.
+  constexpr double kWork = 1e7, kFewest = 300;
+  if (limits->effort() > 0)
+    budget = std::min(budget, static_cast<int>(std::max(kFewest, kWork / limits->effort())));
   BoxCertificate result = prove(Prover(*limits, side, region.condition), start, budget);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
   return result;

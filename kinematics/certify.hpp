@@ -36,8 +36,9 @@ struct BoxCertificate {
 /// holds no singularity (the same sign of det J as at home, and every J in every box regular), and
 /// keeps κ at or below a bound. Limits take the smaller of natural and mean value
 /// enclosures; singular values are bounded by Weyl's theorem about the middle of a box.
-/// fails: a pose that breaks a limit was found and checked by intervals. undecided: no closed form,
-/// the box touches a limit, or the budget was spent; the reason says which.
+/// fails: a pose that breaks a limit was found and checked by intervals. undecided: a limit without
+/// enclosure, joints that could not be followed from home, the box touches a limit, or the budget was
+/// spent; the reason says which.
 /// @param budget most boxes to be examined; some µs each.
 /// @throws std::invalid_argument for sizes, tilts or bounds that are negative or not finite.
 [[nodiscard]] BoxCertificate certify_box(const Machine& machine, const PoseRegion& region,

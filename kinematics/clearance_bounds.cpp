@@ -251,9 +251,7 @@ void LegBounds::enclose_clearances(const PoseBox& box, const Mask& wanted,
   if (std::none_of(clearances_.begin(), clearances_.end(),
                    [&](const Clearance& pair) { return wanted[pair.limit]; }))
     return;
-  PoseBox point;
-  for (int k = 0; k < 6; ++k) point[k] = Interval(middle(box[k]));
-  const Place whole = place(box), centre = place(point);
+  const Place whole = place(box), centre = place(middle_of(box));
   const bool smooth = std::all_of(whole.drives.begin(), whole.drives.end(), [](const Drive& drive) {
     return std::all_of(drive.row.begin(), drive.row.end(),
                        [](const Interval& rate) { return magnitude(rate) < infinity(); });

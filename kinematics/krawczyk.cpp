@@ -32,6 +32,20 @@ ModeCertificate prove_root(int n,
   return {};
 }
 
+std::optional<std::vector<int>> independent_columns(const Eigen::MatrixXd& matrix) {
+  constexpr double kZero = 1e-10, kDoubt = 1e-7;  // of the greatest pivot
+  std::vector<int> columns;
+  if (matrix.size() == 0) return columns;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
+  for (Eigen::Index i = 0; i < qr.matrixR().diagonal().size(); ++i) {
+    const double pivot = std::abs(qr.matrixR()(i, i)) / qr.maxPivot();
+    if (!(pivot > kZero)) break;
+    if (pivot < kDoubt) return std::nullopt;
+    columns.push_back(qr.colsPermutation().indices()[i]);
+  }
+  return columns;
+}
+
 IntervalVector unit_axis(const Vector3& axis) {
   IntervalVector result = vector_of(axis);
   if (axis.cwiseAbs().sum() == 1 && axis.cwiseAbs().maxCoeff() == 1) return result;

@@ -1,171 +1,37 @@
+#include <numeric>
+
 #include "kinematics/interval_matrix.hpp"
-#include "kinematics/krawczyk_root.hpp"
 #include "kinematics/manifold.hpp"
+#include "kinematics/screw_chain.hpp"
 
 // Loops of screws.
 namespace polyglide {
 namespace {
 
-/// One factor of a loop: the exponential of a screw times a coordinate, or a fixed rotation about
-/// a point.
-struct Factor {
-  int freedom = -1;
-  bool translational = false;
-  int sign = 1;
-  IntervalVector w, v;
-  double coordinate = 0;
-  IntervalRotation rotation;  // fixed factor: rotation, with shift
-  IntervalVector shift;
-};
-
-struct Place {
-  IntervalRotation rotation = no_rotation();
-  IntervalVector shift{Interval(0.0), Interval(0.0), Interval(0.0)};
-};
-
-Place operator*(const Place& a, const Place& b) {
-  Place result{product(a.rotation, b.rotation), turned(a.rotation, b.shift)};
-  for (int i = 0; i < 3; ++i) result.shift[i] += a.shift[i];
-  return result;
-}
-
-Place place_of(const Factor& factor, const Interval& increment) {
-  if (factor.freedom < 0) return {factor.rotation, factor.shift};
-  Place place;
-  const Interval q = static_cast<double>(factor.sign) * (factor.coordinate + increment);
-  if (factor.translational) {
-    for (int i = 0; i < 3; ++i) place.shift[i] = q * factor.v[i];
-    return place;
-  }
-  place.rotation = rotation_about(factor.w, q);
-  // A point of the axis, and the advance along it.
-  const IntervalVector point = cross(factor.w, factor.v);
-  const IntervalVector moved = turned(place.rotation, point);
-  const Interval advance = q * dot(factor.w, factor.v);
-  for (int i = 0; i < 3; ++i) place.shift[i] = point[i] - moved[i] + advance * factor.w[i];
-  return place;
-}
-
 class Closure {
  public:
   Closure(const Model& model, const Posture& posture)
-      : model_(model), columns_(static_cast<int>(model.freedoms.size())) {
-    for (const auto& loop : model.loops) {
-      loops_.emplace_back();
-      for (const LoopStep& step : loop) add(step, posture);
-    }
+      : size_(model.size), columns_(model.freedoms.size()) {
+    std::iota(columns_.begin(), columns_.end(), 0);
+    for (const auto& loop : model.loops)
+      loops_.push_back({chain_of(model, loop, posture), {}, model.centre});
   }
 
-  [[nodiscard]] int rows() const { return 6 * static_cast<int>(loops_.size()); }
-
-  /// Per loop the vector of the rotation's skew part, zero with a rotation only for none or half a
-  /// turn, and the shift/size. @param box increments per freedom, translations per size.
+  /// Six rows per loop, as enclose_loop(). @param box increments per freedom, translations per
+  /// size.
   [[nodiscard]] Enclosure enclose(const std::vector<Interval>& box) const {
-    Enclosure result{std::vector<Interval>(rows(), Interval(0.0)),
-                     IntervalMatrix(rows(), columns_)};
-    for (std::size_t l = 0; l < loops_.size(); ++l) enclose_loop(static_cast<int>(l), box, result);
+    const int rows = 6 * static_cast<int>(loops_.size());
+    Enclosure result{std::vector<Interval>(rows, Interval(0.0)),
+                     IntervalMatrix(rows, static_cast<int>(columns_.size()))};
+    for (std::size_t l = 0; l < loops_.size(); ++l)
+      enclose_loop(loops_[l], box, size_, columns_, 6 * static_cast<int>(l), result);
     return result;
   }
 
  private:
-  void add(const LoopStep& step, const Posture& posture) {
-    const Joint& joint = model_.mechanism.joints[step.joint];
-    std::vector<Factor> factors;
-    const int first = model_.first_freedom[step.joint];
-    if (joint.type == JointType::spherical) {
-      for (int i : {2, 1, 0}) {
-        Factor factor;
-        factor.freedom = first + i;
-        factor.w = vector_of(Vector3::Unit(i));
-        factor.v = cross(vector_of(joint.at), factor.w);
-        factors.push_back(factor);
-      }
-      Factor fixed;
-      fixed.rotation = rotation_of(posture.balls[step.joint]);
-      const IntervalVector at = vector_of(joint.at);
-      if (step.sign < 0) fixed.rotation = transposed(fixed.rotation);
-      const IntervalVector moved = turned(fixed.rotation, at);
-      for (int i = 0; i < 3; ++i) fixed.shift[i] = at[i] - moved[i];
-      factors.push_back(fixed);
-    } else {
-      for (int i = 0; i < freedoms(joint.type); ++i) {
-        const Freedom& freedom = model_.freedoms[first + i];
-        Factor factor;
-        factor.freedom = first + i;
-        factor.translational = freedom.translational;
-        factor.coordinate = posture.q[first + i];
-        // Whole turns change nothing, unless the joint is a screw.
-        if (!factor.translational && joint.type != JointType::helical)
-          factor.coordinate = std::remainder(factor.coordinate, 2 * M_PI);
-        factor.w = unit_axis(freedom.screw.head<3>());
-        factor.v = vector_of(freedom.screw.tail<3>());
-        factors.push_back(factor);
-      }
-    }
-    if (step.sign < 0) {
-      std::reverse(factors.begin(), factors.end());
-      for (Factor& factor : factors) factor.sign = -1;
-    }
-    loops_.back().insert(loops_.back().end(), factors.begin(), factors.end());
-  }
-
-  static IntervalRotation transposed(const IntervalRotation& r) {
-    IntervalRotation result;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) result[i][j] = r[j][i];
-    return result;
-  }
-
-  void enclose_loop(int loop, const std::vector<Interval>& box, Enclosure& result) const {
-    Place way;
-    std::vector<std::pair<IntervalVector, IntervalVector>> screws;
-    std::vector<int> freedom;
-    for (const Factor& factor : loops_[loop]) {
-      Interval increment(0.0);
-      if (factor.freedom >= 0) {
-        increment = box[factor.freedom];
-        if (factor.translational) increment *= model_.size;
-        // The screw where the factors before have carried it.
-        IntervalVector w = turned(way.rotation, factor.w), v = turned(way.rotation, factor.v);
-        if (factor.translational) w = {Interval(0.0), Interval(0.0), Interval(0.0)};
-        const IntervalVector moment = cross(way.shift, w);
-        for (int i = 0; i < 3; ++i) {
-          v[i] = static_cast<double>(factor.sign) * (v[i] + moment[i]);
-          w[i] *= static_cast<double>(factor.sign);
-        }
-        screws.emplace_back(w, v);
-        freedom.push_back(factor.freedom);
-      }
-      way = way * place_of(factor, increment);
-    }
-    const IntervalRotation& r = way.rotation;
-    const int row = 6 * loop;
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      result.values[row + i] = (r[k][j] - r[j][k]) / 2.0;
-      result.values[row + 3 + i] = way.shift[i] / model_.size;
-    }
-    for (std::size_t s = 0; s < screws.size(); ++s) {
-      const auto& [w, v] = screws[s];
-      const Interval scale(model_.freedoms[freedom[s]].translational ? model_.size : 1.0);
-      // d(R) = ŵ R, d(shift) = w × shift + v.
-      IntervalRotation rate;
-      for (int c = 0; c < 3; ++c) {
-        const IntervalVector column = cross(w, IntervalVector{r[0][c], r[1][c], r[2][c]});
-        for (int i = 0; i < 3; ++i) rate[i][c] = column[i];
-      }
-      const IntervalVector turn = cross(w, way.shift);
-      for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        result.jacobian(row + i, freedom[s]) += scale * (rate[k][j] - rate[j][k]) / 2.0;
-        result.jacobian(row + 3 + i, freedom[s]) += scale * (turn[i] + v[i]) / model_.size;
-      }
-    }
-  }
-
-  const Model& model_;
-  int columns_;
-  std::vector<std::vector<Factor>> loops_;
+  double size_;
+  std::vector<int> columns_;
+  std::vector<ScrewLoop> loops_;
 };
 
 bool is_zero(const Interval& x) { return x.lower() == 0 && x.upper() == 0; }
@@ -188,23 +54,10 @@ struct Independent {
 };
 
 Independent independent_part(const Eigen::MatrixXd& jacobian) {
-  constexpr double kZero = 1e-10, kDoubt = 1e-7;  // of the greatest pivot
-  const auto leading = [&](const Eigen::MatrixXd& matrix) -> std::optional<std::vector<int>> {
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
-    std::vector<int> columns;
-    for (Eigen::Index i = 0; i < qr.matrixR().diagonal().size(); ++i) {
-      const double pivot = std::abs(qr.matrixR()(i, i)) / qr.maxPivot();
-      if (!(pivot > kZero)) break;
-      if (pivot < kDoubt) return std::nullopt;
-      columns.push_back(qr.colsPermutation().indices()[i]);
-    }
-    return columns;
-  };
-  Independent result;
-  const auto rows = leading(jacobian.transpose());
-  if (!rows) return result;
-  const auto columns = leading(jacobian(*rows, Eigen::all));
-  if (!columns || columns->size() != rows->size()) return result;
+  const auto rows = independent_columns(jacobian.transpose());
+  if (!rows) return {};
+  const auto columns = independent_columns(jacobian(*rows, Eigen::all));
+  if (!columns || columns->size() != rows->size()) return {};
   return {*rows, *columns};
 }
 

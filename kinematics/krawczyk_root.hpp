@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "kinematics/interval_rotation.hpp"
 #include "kinematics/krawczyk.hpp"
@@ -20,6 +21,9 @@ struct Enclosure {
 /// @param enclose gives an Enclosure for a box of n increments.
 [[nodiscard]] ModeCertificate prove_root(
     int n, const std::function<Enclosure(const std::vector<Interval>&)>& enclose);
+
+/// Indices of as many columns as are independent; nullopt when the rank is in doubt.
+[[nodiscard]] std::optional<std::vector<int>> independent_columns(const Eigen::MatrixXd& matrix);
 
 /// An axis of unit length: what rounding left of it is widened, what is exact stays exact.
 [[nodiscard]] IntervalVector unit_axis(const Vector3& axis);

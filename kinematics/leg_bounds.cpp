@@ -3,10 +3,6 @@
 #include "kinematics/limits.hpp"
 
 namespace polyglide {
-std::size_t LegBounds::add(const std::string& name) {
-  names_.push_back(name);
-  return names_.size() - 1;
-}
 
 void LegBounds::add_row(const Machine& machine, int index,
                         const std::vector<std::string>& ignored) {
@@ -95,13 +91,13 @@ std::optional<LegBounds> LegBounds::make(const Machine& machine,
                   [&](const auto& limit) { return !is_ignored(limit.name, ignored); }) ||
       !result.add_clearances(machine, ignored))
     return std::nullopt;
-  if (result.names_.size() > kMost) return std::nullopt;
+  if (result.size() > kMost) return std::nullopt;
   return result;
 }
 
-void LegBounds::enclose(const PoseBox& box, const Mask& wanted,
-                        std::vector<LimitBound>& bounds) const {
-  bounds.resize(names_.size());
+void LegBounds::enclose(const PoseBox& box, const Mask& wanted, std::vector<LimitBound>& bounds,
+                        const BranchPointer& /*branch*/) const {
+  bounds.resize(size());
   const Turned turning = turn(box);
   std::vector<std::pair<bool, Drive>> drives(drives_);
   const auto drive_needed = [&](int d) {
@@ -141,9 +137,13 @@ void LegBounds::enclose(const PoseBox& box, const Mask& wanted,
   enclose_clearances(box, wanted, bounds);
 }
 
-IntervalMatrix LegBounds::jacobian(const PoseBox& box) const { return matrix(box, false); }
+IntervalMatrix LegBounds::jacobian(const PoseBox& box, const BranchPointer& /*branch*/) const {
+  return matrix(box, false);
+}
 
-IntervalMatrix LegBounds::rod_rows(const PoseBox& box) const { return matrix(box, true); }
+IntervalMatrix LegBounds::rod_rows(const PoseBox& box, const BranchPointer& /*branch*/) const {
+  return matrix(box, true);
+}
 
 IntervalMatrix LegBounds::matrix(const PoseBox& box, bool scaled) const {
   const int n = static_cast<int>(axes_.size());
@@ -161,7 +161,7 @@ IntervalMatrix LegBounds::matrix(const PoseBox& box, bool scaled) const {
   return result;
 }
 
-LegBounds::MovingRows LegBounds::moving_rows(const PoseBox& box) const {
+std::optional<BoxLimits::MovingRows> LegBounds::moving_rows(const PoseBox& box) const {
   const int n = static_cast<int>(axes_.size());
   const IntervalMatrix zero(drives_, n);
   MovingRows result{zero, {zero, zero, zero}};

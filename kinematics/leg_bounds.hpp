@@ -1,39 +1,21 @@
 #pragma once
 
-#include <bitset>
-#include <string>
-
-#include "kinematics/interval_matrix.hpp"
+#include "kinematics/box_limits.hpp"
 #include "kinematics/interval_rotation.hpp"
 #include "kinematics/leg_places.hpp"
-#include "kinematics/quadrics.hpp"
 #include "kinematics/solve.hpp"
 
 namespace polyglide {
 
-/// Task coordinates [x y z a b c] from home, each a range [m, rad]; rotation Rz(c)·Ry(b)·Rx(a).
-using PoseBox = std::array<Interval, 6>;
-
-/// One limit as "value <= 0 is allowed", on a box of poses. Scale as the limit's own [m, m²].
-struct LimitBound {
-  Interval value;
-  std::array<Interval, 6> gradient;  ///< by the six coordinates; not finite where not smooth
-};
-
-/// The limits and the Jacobian of a leg machine, enclosed on boxes of poses. The same
-/// definitions as LegKernel's, 1e-9 of slack included. Needs UpwardRounding.
-/// Gradients enclose how a limit changes from the middle() of the box, for the value that enclose()
-/// gives there.
+/// The limits and the Jacobian of a leg machine in closed form, with the same definitions as
+/// LegKernel's.
 ///
 /// Gradients are closed forms: with v from a rod's carriage joint at home to its platform joint, p
 /// its part across the guide g, h = sqrt(L² - p²): the drive is v·g + side·h and changes with g -
 /// side·p/h; v changes with t, and with the angles by w × arm. A rod n on a crank, whose end moves
 /// with e per angle: the angle solves A cos θ + B sin θ = C and changes with n/(n·e).
-class LegBounds {
+class LegBounds final : public BoxLimits {
  public:
-  static constexpr std::size_t kMost = 256;
-  using Mask = std::bitset<kMost>;
-
   /// nullopt for machines without closed form, or whose rods must agree about a carriage in a way
   /// that intervals cannot prove, or with more than kMost limits; or with one that has no
   /// enclosure: an expression, or a clearance of a mesh.
@@ -43,31 +25,17 @@ class LegBounds {
                                                      const std::vector<std::string>& ignored,
                                                      const Eigen::Quaterniond& fixed, bool turning);
 
-  [[nodiscard]] std::size_t size() const { return names_.size(); }
-  /// Name of limit i, as Evaluator's: several may share one.
-  [[nodiscard]] const std::string& name(std::size_t i) const { return names_[i]; }
+  void enclose(const PoseBox& box, const Mask& wanted, std::vector<LimitBound>& bounds,
+               const BranchPointer& branch = {}) const override;
 
-  /// Encloses the limits in `wanted`; the others are left as they are.
-  void enclose(const PoseBox& box, const Mask& wanted, std::vector<LimitBound>& bounds) const;
+  /// All that rods, strokes, cones and planes say is of second degree.
+  [[nodiscard]] std::vector<QuadricLimit> quadrics(Mask& rest) const override;
 
-  /// The limits of places alone, as at the angles zero: all that rods, strokes, cones and planes
-  /// say is of second degree. `rest`: the limits that are not among them.
-  [[nodiscard]] std::vector<QuadricLimit> quadrics(Mask& rest) const;
-
-  /// Task Jacobian, drives × task axes, rotations per characteristic length. Entries are unbounded
-  /// where a rod may be at the end of its reach.
-  [[nodiscard]] IntervalMatrix jacobian(const PoseBox& box) const;
-
-  /// The Jacobian with every rod's row multiplied by a positive number, so that it stays bounded at
-  /// the end of the rod's reach: same rank, same sign of the determinant inside the reach.
-  [[nodiscard]] IntervalMatrix rod_rows(const PoseBox& box) const;
-
-  /// rod_rows() and how they change with x, y and z. Angles zero.
-  struct MovingRows {
-    IntervalMatrix rows;
-    std::array<IntervalMatrix, 3> rates;  ///< not finite where a rod may be at the end of its reach
-  };
-  [[nodiscard]] MovingRows moving_rows(const PoseBox& box) const;
+  [[nodiscard]] IntervalMatrix jacobian(const PoseBox& box,
+                                        const BranchPointer& branch = {}) const override;
+  [[nodiscard]] IntervalMatrix rod_rows(const PoseBox& box,
+                                        const BranchPointer& branch = {}) const override;
+  [[nodiscard]] std::optional<MovingRows> moving_rows(const PoseBox& box) const override;
 
  private:
   struct Cone {
@@ -126,7 +94,6 @@ class LegBounds {
   static constexpr double kSlack = 1e-9;
 
   LegBounds() = default;
-  std::size_t add(const std::string& name);
   void add_row(const Machine& machine, int index, const std::vector<std::string>& ignored);
   void add_planes(const Machine& machine, const std::vector<std::string>& ignored);
   /// False when one cannot be enclosed.
@@ -164,7 +131,6 @@ class LegBounds {
   [[nodiscard]] LimitBound enclose_pair(const Clearance& pair, const Place& whole,
                                         const Place& middle) const;
 
-  std::vector<std::string> names_;
   std::vector<Row> rows_;
   std::vector<Plane> planes_;
   std::vector<Clearance> clearances_;

@@ -4,8 +4,6 @@
 namespace polyglide {
 namespace {
 
-const double kInfinity = std::numeric_limits<double>::infinity();
-const Interval kAnything(-kInfinity, kInfinity);
 const IntervalVector kAnyVector{kAnything, kAnything, kAnything};
 
 }  // namespace

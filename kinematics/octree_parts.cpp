@@ -51,7 +51,7 @@ double OctreeBox::volume_of(const OctreeCell& cell) const {
 }
 
 OctreeParts::OctreeParts(const OctreeBox& box, const CellJudge& judge,
-                         const std::vector<OctreeCell>& cells)
+                         const std::vector<OctreeCell>& cells, bool join)
     : box_(box), judge_(judge), cells_(cells), sure_(cells.size()), maybe_(cells.size()) {
   places_.reserve(2 * cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -63,7 +63,7 @@ OctreeParts::OctreeParts(const OctreeBox& box, const CellJudge& judge,
   std::iota(sure_.begin(), sure_.end(), 0);
   std::iota(maybe_.begin(), maybe_.end(), 0);
   if (home_ < 0) return;
-  join_over_faces();
+  join_over_faces(join);
   const int count = static_cast<int>(cells.size());
   for (int i = 0; i < count; ++i)
     if (!perhaps_with_home(i)) {
@@ -99,7 +99,7 @@ void OctreeParts::neighbour(const OctreeCell& cell, const CellPlace& way,
   }
 }
 
-void OctreeParts::join_over_faces() {
+void OctreeParts::join_over_faces(bool join) {
   const int count = static_cast<int>(cells_.size());
   for (int i = 0; i < count; ++i)
     for (int axis = 0; axis < 3; ++axis)
@@ -109,7 +109,7 @@ void OctreeParts::join_over_faces() {
         step[axis] = way;
         neighbour(cells_[i], step, [&](int other) {
           unite(maybe_, i, other);
-          if (first_of(sure_, i) != first_of(sure_, other) &&
+          if (join && first_of(sure_, i) != first_of(sure_, other) &&
               joined(cells_[i], cells_[other], axis, way))
             unite(sure_, i, other);
         });

@@ -42,7 +42,9 @@ class OctreeBox {
 class OctreeParts {
  public:
   /// Cells that are not out, of which none holds another. All three are kept by reference.
-  OctreeParts(const OctreeBox& box, const CellJudge& judge, const std::vector<OctreeCell>& cells);
+  /// @param join whether surely_with_home() will be asked
+  OctreeParts(const OctreeBox& box, const CellJudge& judge, const std::vector<OctreeCell>& cells,
+              bool join = true);
 
   /// Index of a cell that holds home, of one wholly inside if there is any; -1 where there is none.
   [[nodiscard]] int home() const { return home_; }
@@ -56,7 +58,7 @@ class OctreeParts {
   void neighbour(const OctreeCell& cell, const CellPlace& way, const Visit& visit) const;
   bool joined(const OctreeCell& a, const OctreeCell& b, int axis, int way) const;
   bool joined_across_levels(const OctreeCell& a, const OctreeCell& b, int axis, int way) const;
-  void join_over_faces();
+  void join_over_faces(bool join);
   void join_over_edges();
 
   const OctreeBox& box_;

@@ -79,24 +79,24 @@ bool all_finite(const IntervalMatrix& a) {
 
 }  // namespace
 
-std::optional<PlaneBound> singular_face(const LegBounds& limits, const PoseBox& box,
+std::optional<PlaneBound> singular_face(const BoxLimits& limits, const PoseBox& box,
                                         const Cuboid& cuboid, int side) {
   PoseBox centre = box;
   for (int k = 0; k < 3; ++k) centre[k] = Interval(cuboid.middle[k]);
-  const LegBounds::MovingRows whole = limits.moving_rows(box);
-  if (!std::ranges::all_of(whole.rates, all_finite)) return std::nullopt;
-  const IntervalMatrix at = limits.rod_rows(centre);
+  const std::optional<BoxLimits::MovingRows> whole = limits.moving_rows(box);
+  if (!whole || !std::ranges::all_of(whole->rates, all_finite)) return std::nullopt;
+  const IntervalMatrix at = limits.rod_rows(centre, nullptr);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(middle(at),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::MatrixXd u = svd.matrixU().transpose(), v = svd.matrixV();
-  const auto pivot = last_pivot(product(u, product(whole.rows, v)));
+  const auto pivot = last_pivot(product(u, product(whole->rows, v)));
   const auto in_middle = last_pivot(product(u, product(at, v)));
   const int turned = determinant_sign(exactly(u)) * determinant_sign(exactly(v));
   if (!pivot || !in_middle || turned == 0 || pivot->sign != in_middle->sign) return std::nullopt;
   const double sign = -side * turned * pivot->sign;
   PlaneBound face{sign * in_middle->value, {}};
   for (int k = 0; k < 3; ++k) {
-    const IntervalMatrix rate = product(u, product(whole.rates[k], v));
+    const IntervalMatrix rate = product(u, product(whole->rates[k], v));
     Interval slope(0.0);
     for (int i = 0; i < rate.rows(); ++i)
       for (int j = 0; j < rate.cols(); ++j) slope += pivot->left[i] * rate(i, j) * pivot->right[j];

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kinematics/leg_bounds.hpp"
+#include "kinematics/box_limits.hpp"
 
 namespace polyglide {
 
@@ -10,8 +10,9 @@ namespace polyglide {
 /// With the singular vectors of J in the middle as U and V, UᵀJV is nearly diagonal; where its
 /// last entry alone may be zero, elimination of the others leaves one number of the sign of det J,
 /// and its slope. Square J. Needs UpwardRounding.
-/// nullopt where more than one singular value may be zero, or a rod be at the end of its reach.
-[[nodiscard]] std::optional<PlaneBound> singular_face(const LegBounds& limits, const PoseBox& box,
+/// nullopt where more than one singular value may be zero, or a rod be at the end of its reach, or
+/// how J changes is not known.
+[[nodiscard]] std::optional<PlaneBound> singular_face(const BoxLimits& limits, const PoseBox& box,
                                                       const Cuboid& cuboid, int side);
 
 }  // namespace polyglide

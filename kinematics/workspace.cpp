@@ -106,11 +106,27 @@ double sampled_accuracy(const WorkspaceOptions& options) {
   return options.accuracy < kFinest ? kDefault : options.accuracy;
 }
 
+/// Where joints are followed large boxes say nothing: what was sampled, with a margin. That the
+/// workspace ends within it is proved on the way.
+Bounds around(const Region& region) {
+  constexpr double kMargin = 0.1;
+  Bounds box = region.extent;
+  for (int k = 0; k < 3; ++k) {
+    if (region.grid.count[k] == 1) continue;  // not commanded
+    const double margin = kMargin * (box.upper[k] - box.lower[k]) + region.grid.step;
+    box.lower[k] -= margin;
+    box.upper[k] += margin;
+  }
+  return box;
+}
+
 /// Puts proved bounds in place of sampled ones, where there is a proof.
 void certify(Workspace& result, const Machine& machine, const WorkspaceOptions& options,
              const Bounds& reach, const SingularPlaces& singular) {
-  constexpr double kOfAccuracy = 2;  // bounds as wide as the volume is uncertain to either side
-  const double tolerance = std::max(kOfAccuracy * sampled_accuracy(options), 1e-4);
+  constexpr double kOfAccuracy = 2;   // bounds as wide as the volume is uncertain to either side
+  constexpr double kFollowed = 1e-2;  // where joints are followed, cells take long
+  const double tolerance =
+      std::max(kOfAccuracy * sampled_accuracy(options), machine.legs ? 1e-4 : kFollowed);
   // Bounds made by clearances close slowly; where they stay wide, sampled ones say more.
   constexpr double kWidest = 0.05;
   // So do those at a wall, near which two singular values vanish.
@@ -222,7 +238,9 @@ Workspace compute_workspace(const Machine& machine, const WorkspaceOptions& opti
     const Boundary boundary = find_boundary(probe, region, fineness.bisections);
     result.limits_hit = boundary.limits;
     if (one && !options.volume_only)
-      certify(result, evaluator.machine(), options, search_bounds(probe), {crosses, probe.wall()});
+      certify(result, evaluator.machine(), options,
+              evaluator.closed_form() ? search_bounds(probe) : around(region),
+              {crosses, probe.wall()});
     result.lower = boundary.extent.lower;
     result.upper = boundary.extent.upper;
     if (!options.volume_only)

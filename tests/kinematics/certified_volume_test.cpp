@@ -169,6 +169,44 @@ TEST(CertifiedVolume, CountsSingularPlacesWhereAsked) {
   }
 }
 
+// Each drive of these is a coordinate of the tool: a cube, from which the arms of the
+// 3-CRR and the tripteron may take corners.
+TEST(CertifiedVolume, OfDecoupledMachinesIsTheCubeOfTheirStrokes) {
+  const auto dut = [](const char* name, double half, int budget) {
+    const Machine machine = catalog_machine(name);
+    const Vector3 room = Vector3::Constant(1.1 * half);
+    return certify_volume(machine, {}, Eigen::Quaterniond::Identity(), {-room, room}, {}, 1e-2,
+                          budget);
+  };
+  const auto cube = dut("3-cpu", 0.15, 20000);
+  ASSERT_TRUE(cube);
+  EXPECT_LE(cube->lower, 0.3 * 0.3 * 0.3);
+  EXPECT_GE(cube->upper, 0.3 * 0.3 * 0.3);
+  EXPECT_LT(cube->upper - cube->lower, 0.02 * cube->upper);
+  const auto cut = dut("3-crr", 0.2, 20000);
+  ASSERT_TRUE(cut);
+  EXPECT_GT(cut->upper, 0.0635);
+  EXPECT_LT(cut->lower, 0.4 * 0.4 * 0.4);
+  EXPECT_GT(cut->lower, 0.8 * cut->upper);
+}
+
+TEST(CertifiedVolume, WithoutClosedFormIsTheSameForAnyNumberOfThreads) {
+  const Machine machine = catalog_machine("3-ppsp");
+  const auto dut = [&] {
+    const Vector3 room = Vector3::Constant(0.13);
+    return certify_volume(machine, {}, Eigen::Quaterniond::Identity(), {-room, room}, {}, 1e-2,
+                          4000);
+  };
+  const auto two = dut();
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const auto alone = dut();
+  ASSERT_TRUE(two && alone);
+  EXPECT_EQ(two->lower, alone->lower);
+  EXPECT_EQ(two->upper, alone->upper);
+  EXPECT_LE(two->lower, 0.006965 * 1.02);
+  EXPECT_GE(two->upper, 0.006965 * 0.98);
+}
+
 TEST(CertifiedVolume, ABudgetTooSmallLeavesWideBounds) {
   const auto dut = proved(catalog_machine("delta-1"), 1e-4, {}, 3000);
   ASSERT_TRUE(dut);

@@ -147,5 +147,52 @@ TEST(CertifyBox, RefusesNonsenseAndAdmitsWhatItCannotDo) {
   EXPECT_EQ(certify_box(machine, {}).verdict, CertifyVerdict::certified);
 }
 
+// Without closed form. The drives of a 3-CPU are the coordinates of its tool.
+TEST(CertifyBox, GoesAsFarAsTheStrokesOfDecoupledMachines) {
+  for (const char* name : {"3-cpu", "tripteron"}) {
+    const Machine machine = catalog_machine(name);
+    const double stroke = name == std::string("3-cpu") ? 0.15 : 0.2;
+    const BoxCertificate good = certify_box(machine, region_of(Vector3::Constant(0.1), {0, 0, 0}));
+    EXPECT_EQ(good.verdict, CertifyVerdict::certified) << name << ": " << good.reason;
+    const BoxCertificate bad =
+        certify_box(machine, region_of(Vector3::Constant(0.04), Vector3(stroke, 0, 0)));
+    EXPECT_EQ(bad.verdict, CertifyVerdict::fails) << name << ": " << bad.reason;
+    EXPECT_EQ(bad.limit, "stroke x.joint1 max") << name;
+    ASSERT_TRUE(bad.at);
+    EXPECT_GT(bad.at->position.x(), stroke);
+    const BoxCertificate near =
+        certify_box(machine, region_of(Vector3::Constant(0.02), Vector3(stroke - 0.0101, 0, 0)));
+    EXPECT_EQ(near.verdict, CertifyVerdict::certified) << name << ": " << near.reason;
+  }
+}
+
+TEST(CertifyBox, WithoutClosedFormWhatIsCertifiedHoldsAtEverySample) {
+  Uniform uniform;
+  for (const char* name : {"3-rpc", "quadrupteron", "minimanipulator", "3-ppsp"}) {
+    const Machine machine = catalog_machine(name);
+    const Evaluator evaluator(machine);
+    const double tilt = machine.task.rotations > 0 ? 0.01 : 0;
+    const Vector3 size = Vector3::Constant(0.02 * machine.model.size);
+    const BoxCertificate dut = certify_box(machine, region_of(size, Vector3::Zero(), tilt));
+    EXPECT_EQ(dut.verdict, CertifyVerdict::certified) << name << ": " << dut.reason;
+    for (int sample = 0; sample < 20; ++sample) {
+      Eigen::Matrix<double, 6, 1> at = Eigen::Matrix<double, 6, 1>::Zero();
+      at.head<3>() = size.cwiseProduct(uniform.vector()) / 2;
+      for (int axis : machine.task.axes)
+        if (axis > 2) at[axis] = tilt * uniform();
+      Eigen::VectorXd drives;
+      EXPECT_LT(evaluator.inverse(pose_of(at), drives), 0) << name;
+    }
+  }
+}
+
+TEST(CertifyBox, OutOfTheReachOfLimbsIsNotCertified) {
+  const BoxCertificate dut =
+      certify_box(catalog_machine("3-crr"), region_of(Vector3::Constant(0.01), Vector3(5, 5, 5)));
+  EXPECT_EQ(dut.verdict, CertifyVerdict::fails);
+  EXPECT_EQ(dut.limit, "reach");
+  EXPECT_NEAR(dut.at->position.z(), 5, 0.01);
+}
+
 }  // namespace
 }  // namespace polyglide
