@@ -6,6 +6,7 @@
 #include <string>
 
 #include "kinematics/interval_matrix.hpp"
+#include "kinematics/interval_rotation.hpp"
 #include "kinematics/quadrics.hpp"
 #include "kinematics/solve.hpp"
 

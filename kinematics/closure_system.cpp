@@ -98,8 +98,8 @@ std::vector<int> ClosureSystem::group_bodies() const {
   std::iota(group.begin(), group.end(), 0);
   const auto held = [&](int body) { return body == mechanism.base || body == mechanism.platform; };
   const auto unite = [&](int a, int b) {
-    std::replace(group.begin(), group.end(), std::max(group[a], group[b]),
-                 std::min(group[a], group[b]));
+    const auto [least, most] = std::minmax({group[a], group[b]});
+    std::replace(group.begin(), group.end(), int{most}, int{least});
   };
   for (const Joint& joint : mechanism.joints) {
     const auto [a, b] = joint.bodies;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "kinematics/box_limits.hpp"
-#include "kinematics/interval_rotation.hpp"
 #include "kinematics/leg_places.hpp"
 #include "kinematics/solve.hpp"
 

@@ -93,7 +93,7 @@ bool holds(const Interval& a, double x, double slack = 1e-8) {
 TEST(ClosureBounds, HoldWhatTheGeneralSolverFinds) {
   Uniform uniform;
   for (const char* name : {"3-cpu", "3-crr", "3-rpc", "3-rrc", "tripteron", "quadrupteron",
-                           "3-prps", "minimanipulator", "dynapod", "3-rps"}) {
+                           "3-prps", "minimanipulator", "dynapod", "3-rps", "h4", "par4"}) {
     const Machine machine = catalog_machine(name);
     const Evaluator evaluator(machine, {"stroke", "range", "cone"});
     int proved = 0;
