@@ -28,7 +28,7 @@ class Octree {
       const double gap = upper - lower, aim = kRoom * tolerance * upper;
       if (gap <= aim || examined_ >= budget) break;
       // Too much is left for what is left of the budget.
-      if (followed_ && 4 * examined_ >= budget && lower < kHopeless * upper) return std::nullopt;
+      if (followed_ && 10 * examined_ >= budget && lower < kHopeless * upper) return std::nullopt;
       if (!split_widest(std::max(gap - aim, gap / 8), budget - examined_)) break;
     }
     CertifiedVolume result;
@@ -40,7 +40,7 @@ class Octree {
 
  private:
   static constexpr int kFaceDepth = 6;
-  static constexpr double kHopeless = 0.05;
+  static constexpr double kHopeless = 0.1;
   static constexpr double kRoom = 0.9;  // what is aimed at: joining parts loses a little
 
   /// Judges all, on all threads; leaves those that are not out, in their order.
