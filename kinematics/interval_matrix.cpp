@@ -34,6 +34,13 @@ double orthogonality_defect(const Eigen::MatrixXd& q) {
 
 }  // namespace
 
+IntervalMatrix exactly(const Eigen::MatrixXd& a) {
+  IntervalMatrix result(static_cast<int>(a.rows()), static_cast<int>(a.cols()));
+  for (int i = 0; i < result.rows(); ++i)
+    for (int j = 0; j < result.cols(); ++j) result(i, j) = a(i, j);
+  return result;
+}
+
 IntervalMatrix product(const Eigen::MatrixXd& a, const IntervalMatrix& b) {
   IntervalMatrix result(static_cast<int>(a.rows()), b.cols());
   for (int i = 0; i < result.rows(); ++i)

@@ -8,6 +8,9 @@ namespace polyglide {
 
 // All of them need UpwardRounding.
 
+/// The numbers as intervals of no width.
+[[nodiscard]] IntervalMatrix exactly(const Eigen::MatrixXd& a);
+
 /// Product of a matrix of numbers, taken as exact, with one of intervals.
 [[nodiscard]] IntervalMatrix product(const Eigen::MatrixXd& a, const IntervalMatrix& b);
 [[nodiscard]] IntervalMatrix product(const IntervalMatrix& a, const Eigen::MatrixXd& b);

@@ -16,13 +16,6 @@ IntervalMatrix columns_of(const IntervalMatrix& a, int first, int count) {
   return result;
 }
 
-IntervalMatrix exactly(const Eigen::MatrixXd& a) {
-  IntervalMatrix result(static_cast<int>(a.rows()), static_cast<int>(a.cols()));
-  for (int i = 0; i < result.rows(); ++i)
-    for (int j = 0; j < result.cols(); ++j) result(i, j) = a(i, j);
-  return result;
-}
-
 /// About the inverse, in the mean of squares where there are more rows; nullopt where the rank is
 /// in doubt.
 std::optional<Eigen::MatrixXd> inverse_of(const Eigen::MatrixXd& a) {

@@ -63,13 +63,6 @@ std::optional<LastPivot> last_pivot(const IntervalMatrix& a) {
   return pivot;
 }
 
-IntervalMatrix exactly(const Eigen::MatrixXd& a) {
-  IntervalMatrix result(static_cast<int>(a.rows()), static_cast<int>(a.cols()));
-  for (int i = 0; i < result.rows(); ++i)
-    for (int j = 0; j < result.cols(); ++j) result(i, j) = a(i, j);
-  return result;
-}
-
 bool all_finite(const IntervalMatrix& a) {
   for (int i = 0; i < a.rows(); ++i)
     for (int j = 0; j < a.cols(); ++j)
