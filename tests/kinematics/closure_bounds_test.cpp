@@ -85,7 +85,7 @@ Sample sample_of(const Machine& machine, Uniform& uniform, double reach, double 
   return sample;
 }
 
-bool holds(const Interval& a, double x, double slack = 1e-8) {
+bool spans(const Interval& a, double x, double slack = 1e-8) {
   return a.lower() - slack <= x && x <= a.upper() + slack;
 }
 
@@ -124,18 +124,18 @@ TEST(ClosureBounds, HoldWhatTheGeneralSolverFinds) {
           for (std::size_t i = 0; alone && i < dut->size(); ++i) {
             if (dut->name(i) != stroke) continue;
             const double value = drives[d] - joint.range[freedom.index].max;
-            EXPECT_TRUE(holds(whole[i].value, value)) << name << " " << stroke;
+            EXPECT_TRUE(spans(whole[i].value, value)) << name << " " << stroke;
             Interval mean = centre[i].value;
             for (int axis : machine.task.axes)
               mean += whole[i].gradient[axis] * (pose[axis] - middle(sample.box[axis]));
-            EXPECT_TRUE(holds(mean, value)) << name << " " << stroke;
+            EXPECT_TRUE(spans(mean, value)) << name << " " << stroke;
           }
         }
         const auto expected = task_jacobian(machine, posture);
         ASSERT_TRUE(expected);
         for (int i = 0; i < jacobian.rows(); ++i)
           for (int j = 0; j < jacobian.cols(); ++j)
-            EXPECT_TRUE(holds(jacobian(i, j), (*expected)(i, j), 1e-6)) << name;
+            EXPECT_TRUE(spans(jacobian(i, j), (*expected)(i, j), 1e-6)) << name;
       }
     }
     EXPECT_GT(proved, 0) << name;
@@ -163,7 +163,7 @@ TEST(ClosureBounds, AgreeWithClosedFormsOfLegs) {
       for (std::size_t i = 0; i < dut->size(); ++i)
         for (std::size_t j = 0; j < legs->size(); ++j) {
           if (dut->name(i) != legs->name(j) || dut->name(i).find("stroke") != 0) continue;
-          EXPECT_TRUE(holds(loops[i].value, middle(closed[j].value))) << dut->name(i);
+          EXPECT_TRUE(spans(loops[i].value, middle(closed[j].value))) << dut->name(i);
           ++compared;
         }
       EXPECT_EQ(compared, 12);
