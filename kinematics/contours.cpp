@@ -1,7 +1,6 @@
 #include "kinematics/contours.hpp"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 namespace polyglide {
@@ -35,6 +34,18 @@ std::vector<std::vector<int>> chain(const std::vector<std::pair<int, int>>& segm
     if (at[p].size() == 1) walk(p);
   for (int p = 0; p < points; ++p) walk(p);
   return chains;
+}
+
+std::vector<Contour> chained(const std::vector<std::pair<int, int>>& segments,
+                             const std::vector<std::array<double, 2>>& places) {
+  std::vector<Contour> list;
+  for (const std::vector<int>& points : chain(segments, static_cast<int>(places.size()))) {
+    Contour contour;
+    for (int p : points) contour.points.push_back(places[p]);
+    contour.closed = points.size() > 2 && points.front() == points.back();
+    list.push_back(std::move(contour));
+  }
+  return list;
 }
 
 }  // namespace
@@ -81,14 +92,36 @@ std::vector<Contour> contours(const std::vector<signed char>& classes, int width
       }
     }
   locate(edges);
-  std::vector<Contour> list;
-  for (const std::vector<int>& points : chain(segments, static_cast<int>(edges.size()))) {
-    Contour contour;
-    for (int p : points) contour.points.push_back(edges[p].one);
-    contour.closed = points.size() > 2 && points.front() == points.back();
-    list.push_back(std::move(contour));
+  std::vector<std::array<double, 2>> places;
+  for (const CrossedEdge& each : edges) places.push_back(each.one);
+  return chained(segments, places);
+}
+
+std::vector<Contour> contours_through(const std::map<GridEdge, std::array<double, 2>>& points,
+                                      int width, int height) {
+  std::vector<std::array<double, 2>> places;
+  std::map<GridEdge, int> numbers;
+  std::map<std::array<double, 2>, int> known;  // a node is on several edges
+  for (const auto& [edge, place] : points) {
+    const auto [at, fresh] = known.try_emplace(place, static_cast<int>(places.size()));
+    if (fresh) places.push_back(place);
+    numbers[edge] = at->second;
   }
-  return list;
+  std::vector<std::pair<int, int>> segments;
+  for (int j = 0; j + 1 < height; ++j)
+    for (int i = 0; i + 1 < width; ++i) {
+      const std::size_t low = i + static_cast<std::size_t>(width) * j, high = low + width;
+      std::vector<int> found;
+      for (const GridEdge& side :
+           {GridEdge{low, low + 1}, {low + 1, high + 1}, {high, high + 1}, {low, high}})
+        if (const auto number = numbers.find(side);
+            number != numbers.end() && std::ranges::count(found, number->second) == 0)
+          found.push_back(number->second);
+      if (found.size() % 2 != 0) continue;
+      for (std::size_t k = 0; k < found.size(); k += 2)
+        segments.emplace_back(found[k], found[k + 1]);
+    }
+  return chained(segments, places);
 }
 
 }  // namespace polyglide

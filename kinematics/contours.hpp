@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <vector>
 
 namespace polyglide {
@@ -25,5 +26,14 @@ struct CrossedEdge {
 [[nodiscard]] std::vector<Contour> contours(
     const std::vector<signed char>& classes, int width,
     const std::function<void(std::vector<CrossedEdge>&)>& locate);
+
+/// Two neighbouring nodes of a grid, by their numbers row by row; the first is the lesser.
+using GridEdge = std::array<std::size_t, 2>;
+
+/// Chains of points that are known on edges: the points of a cell with two of them belong
+/// together, and of one with four those of its first two sides and those of the others.
+/// @param points on edges, in node units
+[[nodiscard]] std::vector<Contour> contours_through(
+    const std::map<GridEdge, std::array<double, 2>>& points, int width, int height);
 
 }  // namespace polyglide

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <functional>
 #include <vector>
 
@@ -10,7 +9,8 @@ namespace polyglide {
 
 /// Whether four values on a line look like the two sides of a V whose bottom, at zero, is between
 /// the second and the third. @param steps between those two, where one between the others.
-/// Straight falls meet in a point; that they bend by half a step is allowed.
+/// Straight falls meet in a point; that they bend by half a step is allowed. A parabola that
+/// touches zero counts, too: its root is such a V.
 [[nodiscard]] bool is_dip(double before, double near, double far, double beyond, double steps = 1);
 
 struct Bottom {
@@ -23,18 +23,5 @@ struct Bottom {
 [[nodiscard]] std::vector<Bottom> bottoms(
     std::size_t count,
     const std::function<std::vector<double>(const std::vector<double>& ways)>& heights);
-
-/// Two neighbouring nodes of a grid, by their numbers row by row; the first is the lesser.
-using GridEdge = std::array<std::size_t, 2>;
-
-/// Edges of a grid with a dip and no change of sign. @param heights row by row, `width` each; not a
-/// number where there is none.
-[[nodiscard]] std::vector<GridEdge> dips_of(const std::vector<double>& heights,
-                                            const std::vector<signed char>& signs, int width);
-
-/// Classes 0 and 1 of the nodes of a grid, different over the edges that are `crossed` and equal
-/// over the others; 2 where there is no height.
-[[nodiscard]] std::vector<signed char> classes_apart(const std::vector<double>& heights, int width,
-                                                     const std::vector<GridEdge>& crossed);
 
 }  // namespace polyglide

@@ -112,11 +112,13 @@ class LegBounds final : public BoxLimits {
                   std::numeric_limits<double>::infinity()};
   };
   static Drive crank_at(const Row& row, const IntervalVector& v, const CrankKnown& known);
-  static std::optional<std::pair<Interval, IntervalVector>> crank_end(
-      const Row& row, const IntervalVector& v, const Drive& drive, const Interval& end, bool most);
+  /// A limit's value, and its derivative by v.
+  using Ranged = std::pair<Interval, IntervalVector>;
+  static Ranged crank_end(const Row& row, const IntervalVector& v, const Drive& drive,
+                          const Interval& end, bool most);
   /// cos(limit)·|rod| - axis·rod <= 0, and its derivative by v.
-  static std::pair<Interval, IntervalVector> lean(const Row& row, const Cone& cone,
-                                                  const Drive& drive, const IntervalVector& axis);
+  static Ranged lean(const Row& row, const Cone& cone, const Drive& drive,
+                     const IntervalVector& axis);
   /// Where bodies are in a box.
   struct Place {
     PoseBox box;

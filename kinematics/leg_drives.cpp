@@ -5,6 +5,7 @@ namespace polyglide {
 namespace {
 
 const IntervalVector kAnyVector{kAnything, kAnything, kAnything};
+constexpr double kBelowHalfTurn = 3.14;  // angles nearer to it may be on either side of the jump
 
 }  // namespace
 
@@ -108,33 +109,46 @@ LegBounds::Drive LegBounds::drive_of_crank(const Row& row, const IntervalVector&
   }
   const Drive there = crank_at(row, centre, {});
   CrankKnown known;
-  known.place = there.place + dot(first.row, way);
   known.left = -(there.reach + dot(first.reach_row, way));
-  if (magnitude(known.place) < 3) {
-    known.cosine = cosine(known.place);
-    known.sine = sine(known.place);
+  // The angle jumps at the half turn, where what follows from its rate goes on.
+  const Interval place = there.place + dot(first.row, way);
+  if (magnitude(place) < kBelowHalfTurn) {
+    known.place = place;
+    known.cosine = cosine(place);
+    known.sine = sine(place);
   }
   return crank_at(row, v, known);
 }
 
 /// The end of a crank's stroke as the ball about the rod's end there: tighter than by the angle. On
 /// the half turn where C - A cos θ - B sin θ rises (or falls) as at the root, its sign at the end
-/// says on which side of the end the root is. nullopt where the end may be on the other half turn.
-std::optional<std::pair<Interval, IntervalVector>> LegBounds::crank_end(
-    const Row& row, const IntervalVector& v, const Drive& drive, const Interval& end, bool most) {
-  if (!(magnitude(drive.place - end) < 3 && magnitude(end) < 3)) return std::nullopt;
+/// says on which side of the end the root is. Where the end may be on the other half turn the
+/// angle gives the sign alone, so that a box and its middle never say two things of one limit.
+LegBounds::Ranged LegBounds::crank_end(const Row& row, const IntervalVector& v, const Drive& drive,
+                                       const Interval& end, bool most) {
+  const double way = most ? 1 : -1;
+  const Interval beyond = way * (drive.place - end);
+  if (!(magnitude(end) < kBelowHalfTurn)) {
+    const bool jumps = !(magnitude(drive.place) < kBelowHalfTurn);
+    return {beyond, jumps ? kAnyVector : scaled(drive.row, way)};
+  }
   const Interval c = cosine(end), s = sine(end);
   const Interval rate = dot(v, row.onward) * c - dot(v, row.outward) * s;
-  if (!((row.leg.side * rate).upper() < 0)) return std::nullopt;
-  IntervalVector rod;
-  for (int i = 0; i < 3; ++i) rod[i] = v[i] - row.radius * (c * row.outward[i] + s * row.onward[i]);
-  const double way = most ? -row.leg.side : row.leg.side;
-  return std::pair{way * (squared_norm(rod) - square(row.length)), scaled(rod, 2 * way)};
+  if (magnitude(drive.place - end) < kBelowHalfTurn && (row.leg.side * rate).upper() < 0) {
+    IntervalVector rod;
+    for (int i = 0; i < 3; ++i)
+      rod[i] = v[i] - row.radius * (c * row.outward[i] + s * row.onward[i]);
+    const double outward = -way * row.leg.side;
+    return {outward * (squared_norm(rod) - square(row.length)), scaled(rod, 2 * outward)};
+  }
+  if (beyond.upper() <= 0) return {Interval(kAnything.lower(), 0), kAnyVector};
+  if (beyond.lower() > 0)
+    return {Interval(std::numeric_limits<double>::denorm_min(), kAnything.upper()), kAnyVector};
+  return {kAnything, kAnyVector};
 }
 
-std::pair<Interval, IntervalVector> LegBounds::lean(const Row& row, const Cone& cone,
-                                                    const Drive& drive,
-                                                    const IntervalVector& axis) {
+LegBounds::Ranged LegBounds::lean(const Row& row, const Cone& cone, const Drive& drive,
+                                  const IntervalVector& axis) {
   if (row.leg.kind == Leg::Kind::strut) {
     const Interval length = drive.place + row.length;
     return {cone.cosine * length - dot(axis, drive.rod),
@@ -178,12 +192,10 @@ LegBounds::Drive LegBounds::solve(const Row& row, const PoseBox& box, const Turn
     if (limit >= kMost || !wanted[limit]) continue;
     const double way = most ? 1 : -1;
     const Interval end = (most ? row.leg.stroke.max : row.leg.stroke.min) + Interval(way * kSlack);
-    std::optional<std::pair<Interval, IntervalVector>> ball;
-    if (row.leg.kind == Kind::crank_rod) ball = crank_end(row, v, drive, end, most);
-    if (ball)
-      set(limit, ball->first, ball->second);
-    else
-      set(limit, way * (drive.place - end), scaled(drive.row, way));
+    const auto [value, by_v] = row.leg.kind == Kind::crank_rod
+                                   ? crank_end(row, v, drive, end, most)
+                                   : Ranged{way * (drive.place - end), scaled(drive.row, way)};
+    set(limit, value, by_v);
   }
   for (const Cone& cone : row.cones) {
     if (!wanted[cone.limit]) continue;

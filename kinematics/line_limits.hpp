@@ -38,7 +38,7 @@ class LineLimits {
 
   /// Only before a wall.
   void keep_before(const SingularWall& wall) {
-    planes_.push_back({wall.normal, wall.offset, kSingular});
+    planes_.push_back({wall.normal, wall.offset, limits_++});
   }
 
   /// Ascending, along the line of the given x and y. Cost: 1 to 10 µs.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "kinematics/dips.hpp"
 
@@ -56,30 +57,56 @@ std::vector<Dip> look_for_dips(const Probe& probe, const NodeGrid& grid,
   return dips;
 }
 
+BatchResult ask(const Probe& probe, const std::vector<Vector3>& places) {
+  PoseBatch poses;
+  poses.rotation = probe.rotation();
+  poses.wanted = Wanted::condition;
+  for (const Vector3& at : places) {
+    poses.x.push_back(at.x());
+    poses.y.push_back(at.y());
+    poses.z.push_back(at.z());
+  }
+  BatchResult found;
+  probe.evaluator().evaluate(poses, found);
+  return found;
+}
+
 /// Where the dips reach zero, those that do.
 std::vector<Vector3> zeros_in(const Probe& probe, const std::vector<Dip>& dips) {
   const auto place = [&](std::size_t i, double way) -> Vector3 {
     return dips[i].from + way * (dips[i].to - dips[i].from);
   };
   const std::vector<Bottom> lowest = bottoms(dips.size(), [&](const std::vector<double>& ways) {
-    PoseBatch poses;
-    poses.rotation = probe.rotation();
-    poses.wanted = Wanted::condition;
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-      const Vector3 at = place(i / 2, ways[i]);
-      poses.x.push_back(at.x());
-      poses.y.push_back(at.y());
-      poses.z.push_back(at.z());
-    }
-    BatchResult found;
-    probe.evaluator().evaluate(poses, found);
-    return found.inverse_condition;
+    std::vector<Vector3> places;
+    for (std::size_t i = 0; i < ways.size(); ++i) places.push_back(place(i / 2, ways[i]));
+    return ask(probe, places).inverse_condition;
   });
   constexpr double kZero = 1e-7;
   std::vector<Vector3> result;
   for (std::size_t i = 0; i < lowest.size(); ++i)
     if (lowest[i].height < kZero) result.push_back(place(i, lowest[i].at));
   return result;
+}
+
+/// Whether all places between the zeros are singular that no limit stops: zeros of a curve that
+/// lies in a plane do not make the plane singular.
+bool is_singular_between(const Probe& probe, const std::vector<Vector3>& zeros) {
+  constexpr std::size_t kPlaces = 64;
+  constexpr double kSingular = 1e-6;
+  std::mt19937_64 random(1);
+  std::vector<Vector3> places;
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    Vector3 weights;
+    for (double& weight : weights) weight = 1 + static_cast<double>(random() % 1024);
+    weights /= weights.sum();
+    Vector3 place = Vector3::Zero();
+    for (const double weight : weights) place += weight * zeros[random() % zeros.size()];
+    places.push_back(place);
+  }
+  const BatchResult found = ask(probe, places);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (found.limit[i] < 0 && found.inverse_condition[i] > kSingular) return false;
+  return true;
 }
 
 /// The plane (line) through places, within `slack`.
@@ -98,11 +125,26 @@ std::optional<SingularWall> plane_through(const std::vector<Vector3>& places,
   const double root = std::sqrt(static_cast<double>(places.size()));
   const auto wide = [&](Eigen::Index i) { return svd.singularValues()[i] / root; };
   // Neither thick nor so short that it might stand otherwise.
-  if (wide(n - 1) > slack || (n > 1 && wide(n - 2) < 1e6 * slack)) return std::nullopt;
+  if (n < 2 || wide(n - 1) > slack || wide(n - 2) < 1e6 * slack) return std::nullopt;
   SingularWall wall;
   for (Eigen::Index k = 0; k < n; ++k) wall.normal[axes[k]] = svd.matrixV()(k, n - 1);
   wall.offset = wall.normal.dot(centre);
   return wall;
+}
+
+/// Whether home lies beyond, or where home is no place to be, more than half of the nodes inside.
+bool beyond_is_more(const Probe& probe, const NodeGrid& grid, const Probe::Answers& answers,
+                    const SingularWall& wall) {
+  const double home = wall.beyond(Vector3::Zero());
+  const BatchResult at_home = ask(probe, {Vector3::Zero()});
+  if (at_home.limit[0] < 0 && std::abs(home) > 1e-6 * grid.step) return home > 0;
+  int beyond = 0;
+  for (int k = 0; k < grid.count[2]; ++k)
+    for (int j = 0; j < grid.count[1]; ++j)
+      for (int i = 0; i < grid.count[0]; ++i)
+        if (answers.inside(grid.index(i, j, k)))
+          beyond += wall.beyond(grid.at(i, j, k)) > 0 ? 1 : -1;
+  return beyond > 0;
 }
 
 }  // namespace
@@ -120,21 +162,11 @@ std::optional<SingularWall> find_singular_wall(const Probe& probe, const NodeGri
   }
   constexpr std::size_t kFewest = 8;
   if (dips.size() < kFewest) return std::nullopt;
-  const std::vector<Vector3> places = zeros_in(probe, dips);
-  if (places.size() < kFewest) return std::nullopt;
-  auto wall = plane_through(places, probe.active(), 1e-7 * grid.step);
-  if (!wall) return std::nullopt;
-  // Home's side, or where more is inside.
-  double votes = -wall->beyond(Vector3::Zero());
-  if (std::abs(votes) < 1e-6 * grid.step) {
-    votes = 0;
-    for (int k = 0; k < grid.count[2]; ++k)
-      for (int j = 0; j < grid.count[1]; ++j)
-        for (int i = 0; i < grid.count[0]; ++i)
-          if (answers.inside(grid.index(i, j, k)))
-            votes -= wall->beyond(grid.at(i, j, k)) > 0 ? 1 : -1;
-  }
-  if (votes < 0) *wall = {-wall->normal, -wall->offset};
+  const std::vector<Vector3> zeros = zeros_in(probe, dips);
+  if (zeros.size() < kFewest) return std::nullopt;
+  auto wall = plane_through(zeros, probe.active(), 1e-7 * grid.step);
+  if (!wall || !is_singular_between(probe, zeros)) return std::nullopt;
+  if (beyond_is_more(probe, grid, answers, *wall)) *wall = {-wall->normal, -wall->offset};
   return wall;
 }
 

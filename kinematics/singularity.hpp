@@ -68,7 +68,8 @@ struct PathSingularities {
 
 /// Follows the way from home's branch and reports where the sign of the Jacobian's determinant
 /// changes, or where a margin falls to zero and rises again without.
-/// @param samples postures looked at; crossings between them are bisected to 1e-9 of the way
+/// @param samples postures looked at; changes of sign between them are bisected to 1e-9 of the way,
+/// other zeros found to some 1e-6; what is nearer together than 0.1/samples counts as one
 [[nodiscard]] PathSingularities singularities_on_path(const Machine& machine, const Pose& from,
                                                       const Pose& to, int samples = 100);
 

@@ -4,14 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <stdexcept>
 
 #include "kinematics/contours.hpp"
-#include "kinematics/dips.hpp"
 #include "kinematics/mobility.hpp"
 #include "kinematics/region.hpp"
+#include "kinematics/touched_curves.hpp"
 
 namespace polyglide {
 namespace {
@@ -265,47 +264,18 @@ class Mapper {
     }
   }
 
-  /// Curves on which det J is zero and on both sides of which it has one sign: on the coarse grid,
-  /// where 1/κ falls to zero from both sides.
+  /// Curves on which det J is zero and on both sides of which it has one sign.
   void trace_touched() {
-    const int width = u_.count;
-    std::vector<GridEdge> dips = dips_of(map_.inverse_condition, map_.side, width);
-    std::map<GridEdge, std::array<double, 2>> zeros;  // in node units
-    const auto node = [width](std::size_t n) -> std::array<double, 2> {
-      return {static_cast<double>(n % width), static_cast<double>(n / width)};
-    };
-    const auto between = [&](const GridEdge& edge, double way) -> std::array<double, 2> {
-      const auto from = node(edge[0]), to = node(edge[1]);
-      return {from[0] + way * (to[0] - from[0]), from[1] + way * (to[1] - from[1])};
-    };
-    const auto lowest = bottoms(dips.size(), [&](const std::vector<double>& ways) {
+    const auto ask_nodes = [&](const Places& nodes) {
       Places places;
-      for (std::size_t i = 0; i < ways.size(); ++i) {
-        const auto [a, b] = between(dips[i / 2], ways[i]);
-        places.push_back({u_.at(a), v_.at(b)});
-      }
+      for (const auto& [i, j] : nodes) places.push_back({u_.at(i), v_.at(j)});
       return ask(free_, places, true).inverse_condition;
-    });
-    for (std::size_t i = 0; i < dips.size(); ++i)
-      if (lowest[i].height < kSingular) zeros[dips[i]] = between(dips[i], lowest[i].at);
-    std::erase_if(dips, [&](const GridEdge& edge) { return !zeros.contains(edge); });
-    if (dips.empty()) return;
-    const auto locate = [&](std::vector<CrossedEdge>& edges) {
-      for (CrossedEdge& edge : edges) {
-        const auto number = [width](const std::array<double, 2>& at) {
-          return static_cast<std::size_t>(at[0]) + static_cast<std::size_t>(at[1]) * width;
-        };
-        const std::size_t one = number(edge.one), other = number(edge.other);
-        const auto zero = zeros.find({std::min(one, other), std::max(one, other)});
-        if (zero != zeros.end()) edge.one = zero->second;
-      }
     };
     for (const Contour& contour :
-         contours(classes_apart(map_.inverse_condition, width, dips), width, locate)) {
+         touched_curves(map_.inverse_condition, map_.side, u_.count, ask_nodes)) {
       SingularCurve curve;
       curve.closed = contour.closed;
-      for (const auto& point : contour.points)
-        curve.points.push_back({u_.at(point[0]), v_.at(point[1])});
+      for (const auto& [i, j] : contour.points) curve.points.push_back({u_.at(i), v_.at(j)});
       if (classify(curve, false)) map_.curves.push_back(std::move(curve));
     }
   }

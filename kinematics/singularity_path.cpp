@@ -79,6 +79,15 @@ class Touches {
   Touches(const Machine& machine, const Way& way, int mobility, int samples)
       : machine_(machine), way_(way), mobility_(mobility), step_(1.0 / samples) {}
 
+  [[nodiscard]] double step() const { return step_; }
+
+  /// A sample beyond the ends of the way, where the machine gets there.
+  void look(Posture posture, double part, std::vector<SingularCrossing>& found) {
+    if (way_.follow(posture, part))
+      take(posture, part, smaller_margin(machine_, posture), orientation_at(machine_, posture),
+           found);
+  }
+
   /// Takes the next sample; looks at the piece between the last two but one.
   void take(const Posture& posture, double part, double margin, int sign,
             std::vector<SingularCrossing>& found) {
@@ -114,14 +123,25 @@ class Touches {
   std::vector<Sample> last_;
 };
 
-/// A singular place that is a sample is met from both sides.
-void in_order(std::vector<SingularCrossing>& crossings) {
-  std::ranges::sort(crossings, {}, &SingularCrossing::at);
-  constexpr double kSame = 1e-6;
-  const auto same = [](const SingularCrossing& a, const SingularCrossing& b) {
-    return b.at - a.at < kSame;
+/// What lies nearer together than a tenth of a sample is one place: at a touch signs are chance.
+void put_in_order(PathSingularities& found, int samples) {
+  const auto margin = [](const SingularCrossing& crossing) {
+    return std::min(crossing.singularity.direct_margin, crossing.singularity.inverse_margin);
   };
-  crossings.erase(std::unique(crossings.begin(), crossings.end(), same), crossings.end());
+  std::ranges::sort(found.crossings, {}, &SingularCrossing::at);
+  std::vector<SingularCrossing> kept;
+  for (SingularCrossing& crossing : found.crossings) {
+    const bool inside = crossing.at >= 0 && crossing.at <= 1;
+    const bool again = !kept.empty() && crossing.at - kept.back().at < 0.1 / samples;
+    if (inside && !again)
+      kept.push_back(std::move(crossing));
+    else if (inside && margin(crossing) < margin(kept.back()))
+      kept.back() = std::move(crossing);
+  }
+  found.crossings = std::move(kept);
+  if (found.crossings.empty() || !(found.smallest_margin > 0)) return;
+  found.smallest_margin = 0;
+  found.smallest_at = found.crossings.front().at;
 }
 
 }  // namespace
@@ -138,13 +158,14 @@ PathSingularities singularities_on_path(const Machine& machine, const Pose& from
   }
   int sign = orientation_at(machine, posture);
   Touches touches(machine, way, mobility, samples);
+  touches.look(posture, -touches.step(), found.crossings);
   for (int i = 0; i <= samples; ++i) {
     const double part = static_cast<double>(i) / samples;
     const Posture before = posture;
     if (!way.follow(posture, part)) {
       found.end = last_reached(way, posture, std::max(0.0, (i - 1.0) / samples), part);
       found.at_end = singularity_at(machine, posture, mobility, kAtEnd);
-      in_order(found.crossings);
+      put_in_order(found, samples);
       return found;
     }
     const double margin = smaller_margin(machine, posture);
@@ -163,9 +184,8 @@ PathSingularities singularities_on_path(const Machine& machine, const Pose& from
     }
     sign = here;
   }
-  in_order(found.crossings);
-  for (const SingularCrossing& crossing : found.crossings)
-    if (found.smallest_margin > 0) found.smallest_margin = 0, found.smallest_at = crossing.at;
+  touches.look(posture, 1 + touches.step(), found.crossings);
+  put_in_order(found, samples);
   found.reached = true;
   return found;
 }

@@ -129,7 +129,7 @@ void certify(Workspace& result, const Machine& machine, const WorkspaceOptions& 
       std::max(kOfAccuracy * sampled_accuracy(options), machine.legs ? 1e-4 : kFollowed);
   // Bounds made by clearances close slowly; where they stay wide, sampled ones say more.
   constexpr double kWidest = 0.05;
-  // So do those at a wall, near which two singular values vanish.
+  // Those at a wall close slowly, too: two singular values vanish there.
   constexpr int kBudget = 600000, kBudgetAtWall = 200000, kBudgetOfClearances = 20000;
   const bool clearances = !watched_pairs(machine.model.mechanism, options.ignored).empty();
   const auto proved =

@@ -4,6 +4,7 @@
 
 #include "kinematics/singularity.hpp"
 #include "kinematics/singularity_map.hpp"
+#include "kinematics/touched_curves.hpp"
 #include "kinematics/workspace.hpp"
 #include "machines.hpp"
 
@@ -20,9 +21,11 @@ TEST(Dips, AreWhereBothFallsMeetAtZero) {
   const auto bent = [](double x) { return std::abs(x) / (1 + 0.03 * x * x); };
   const auto valley = [](double x) { return std::hypot(x, 2); };
   const auto slope = [](double x) { return 10 + x; };
+  const auto parabola = [](double x) { return x * x; };
   for (double zero : {0.01, 0.3, 0.5, 0.99}) {
     EXPECT_TRUE(at(vee, zero)) << zero;
     EXPECT_TRUE(at(bent, zero)) << zero;
+    EXPECT_TRUE(at(parabola, zero)) << zero;
     EXPECT_FALSE(at(valley, zero)) << zero;
     EXPECT_FALSE(at(slope, zero)) << zero;
   }
@@ -44,21 +47,34 @@ TEST(Dips, BottomsAreFoundTogether) {
   EXPECT_TRUE(bottoms(0, [](const std::vector<double>&) { return std::vector<double>{}; }).empty());
 }
 
-TEST(Dips, PartAGridIntoClasses) {
-  constexpr int kWidth = 7;
-  std::vector<double> heights;
-  std::vector<signed char> signs;
-  for (int j = 0; j < 5; ++j)
-    for (int i = 0; i < kWidth; ++i) {
-      heights.push_back(std::abs(i - 2.4));
-      signs.push_back(1);
+// 1/κ of a disc of nodes, zero on the line y = 7.4 + 0.3 x, or on one through nodes.
+TEST(TouchedCurves, FollowAnyStraightLine) {
+  constexpr int kWidth = 30, kHeight = 26;
+  for (const auto& [rise, at] : {std::pair{0.3, 7.4}, {-0.7, 20.1}, {0.0, 9.0}, {0.5, 4.0}}) {
+    const auto height = [&](double x, double y) { return std::abs(y - at - rise * x); };
+    std::vector<double> heights;
+    for (int j = 0; j < kHeight; ++j)
+      for (int i = 0; i < kWidth; ++i)
+        heights.push_back(std::hypot(i - 14, j - 12) < 11.3 ? height(i, j) : std::nan(""));
+    const std::vector<signed char> signs(heights.size(), 1);
+    const auto ask = [&](const std::vector<std::array<double, 2>>& nodes) {
+      std::vector<double> result;
+      for (const auto& [x, y] : nodes) result.push_back(height(x, y));
+      return result;
+    };
+    const auto found = touched_curves(heights, signs, kWidth, ask);
+    std::size_t points = 0;
+    for (const Contour& contour : found) {
+      points += contour.points.size();
+      for (const auto& [x, y] : contour.points) EXPECT_LT(height(x, y), 1e-9) << rise;
     }
-  const auto dips = dips_of(heights, signs, kWidth);
-  EXPECT_EQ(dips.size(), 5u);
-  const auto classes = classes_apart(heights, kWidth, dips);
-  for (std::size_t n = 0; n < classes.size(); ++n) EXPECT_EQ(classes[n], n % kWidth < 3 ? 1 : 0);
-  for (std::size_t n = 0; n < signs.size(); ++n) signs[n] = n % kWidth < 3 ? 1 : -1;
-  EXPECT_TRUE(dips_of(heights, signs, kWidth).empty());  // det J changes its sign: no touch
+    EXPECT_GT(points, 12u) << rise;
+    std::vector<signed char> changing;
+    for (int j = 0; j < kHeight; ++j)
+      for (int i = 0; i < kWidth; ++i) changing.push_back(j - at - rise * i > 0 ? 1 : -1);
+    // det J changes its sign: no touch
+    EXPECT_TRUE(touched_curves(heights, changing, kWidth, ask).empty()) << rise;
+  }
 }
 
 // Four rods on guides 400 mm above home: where all of them lie flat, the platform can rise and tilt
@@ -86,8 +102,10 @@ TEST(SingularWall, IsMetOnAWayAndDrawnInAMap) {
     pose.position = Vector3(0.02, 0.03, z);
     return pose;
   };
-  for (const double end : {0.42, 0.45}) {
-    const PathSingularities way = singularities_on_path(machine, at(0.38), at(end));
+  // On a sample, between samples, in the last piece, in the first.
+  for (const auto& [from, to] :
+       {std::pair{0.38, 0.42}, {0.38, 0.45}, {0.38, 0.4001}, {0.3999, 0.45}}) {
+    const PathSingularities way = singularities_on_path(machine, at(from), at(to));
     EXPECT_TRUE(way.reached);
     ASSERT_EQ(way.crossings.size(), 1u);
     EXPECT_NEAR(way.crossings[0].pose.position.z(), kFlat, 1e-6);
