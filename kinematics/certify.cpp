@@ -10,6 +10,7 @@
 #include "kinematics/box_limits.hpp"
 #include "kinematics/clearance.hpp"
 #include "kinematics/limits.hpp"
+#include "kinematics/point_machine.hpp"
 
 namespace polyglide {
 namespace {
@@ -240,6 +241,8 @@ BoxCertificate prove(const Prover& prover, const Part& start, int budget) {
 BoxCertificate certify_box(const Machine& machine, const PoseRegion& region,
                            const std::vector<std::string>& ignored, int budget) {
   check_region(region);
+  if (const auto point = point_machine(machine))
+    return certify_box(*point, region, ignored, budget);
   const auto clock = std::chrono::steady_clock::now();
   const std::vector<int>& axes = machine.task.axes;
   const auto commanded = [&](int axis) {

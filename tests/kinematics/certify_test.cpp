@@ -4,7 +4,7 @@
 #include <tbb/global_control.h>
 
 #include "kinematics/evaluate.hpp"
-#include "machines.hpp"
+#include "random_machine.hpp"
 
 namespace polyglide {
 namespace {
@@ -87,6 +87,44 @@ TEST(CertifyBox, WhatIsCertifiedHoldsAtEverySample) {
   }
   EXPECT_GT(certified, 3);
   EXPECT_GT(failed, 3);
+}
+
+// Angles of cranks jump from π to -π: ends beside the jump, on one side only, or none.
+TEST(CertifyBox, CranksThatTurnFarAreJudgedAsTheEvaluatorDoes) {
+  std::mt19937_64 random(7);
+  Uniform uniform;
+  const double none = std::numeric_limits<double>::infinity();
+  int certified = 0, failed = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    Machine machine = random_machine(random, DriveKind::crank);
+    const double end = 2.2 + 0.9 * std::abs(uniform());
+    for (Leg& leg : machine.legs->legs)
+      leg.stroke = trial % 3 == 0   ? Range{-none, end}
+                   : trial % 3 == 1 ? Range{-end, none}
+                                    : Range{-0.3 - std::abs(uniform()), 3.1};
+    std::vector<std::string> ignored;
+    const Evaluator limited(machine);
+    for (const std::string& name : limited.limit_names())
+      if (name.starts_with("cone") || name == "plane") ignored.push_back(name);
+    const Evaluator evaluator(machine, ignored);
+    const PoseRegion region =
+        region_of(Vector3::Constant(0.02 + 0.01 * uniform()), 0.3 * uniform.vector());
+    const BoxCertificate dut = certify_box(machine, region, ignored, 3000);
+    Eigen::VectorXd drives;
+    if (dut.verdict == CertifyVerdict::fails && dut.limit != "singularity") {
+      ++failed;
+      EXPECT_GE(evaluator.inverse(*dut.at, drives), 0) << trial << " " << dut.limit;
+    }
+    if (dut.verdict != CertifyVerdict::certified) continue;
+    ++certified;
+    for (int sample = 0; sample < 200; ++sample) {
+      Pose pose;
+      pose.position = region.centre + region.size.cwiseProduct(uniform.vector()) / 2;
+      EXPECT_LT(evaluator.inverse(pose, drives), 0) << trial;
+    }
+  }
+  EXPECT_GT(certified, 20);
+  EXPECT_GT(failed, 20);
 }
 
 TEST(CertifyBox, OutOfReachFailsAndSaysWhere) {
