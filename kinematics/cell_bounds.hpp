@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kinematics/region.hpp"
+#include "kinematics/probe.hpp"
 #include "kinematics/singular_face.hpp"
 
 namespace polyglide {

@@ -101,6 +101,9 @@ class LegBounds final : public BoxLimits {
   IntervalMatrix matrix(const PoseBox& box, bool scaled) const;
   Drive solve(const Row& row, const PoseBox& box, const Turned& turned, const Mask& wanted,
               std::vector<LimitBound>* bounds) const;
+  /// The limits of a rod that was solved.
+  void bound_limits(const Row& row, const IntervalVector& v, const Drive& drive, const Turned& turn,
+                    const Mask& wanted, std::vector<LimitBound>& bounds) const;
   /// @param v from the base joint at home, or a crank's centre, to the platform joint
   static Drive drive_of_guide(const Row& row, const IntervalVector& v);
   static Drive drive_of_strut(const Row& row, const IntervalVector& v);

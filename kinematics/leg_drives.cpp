@@ -173,14 +173,21 @@ LegBounds::Drive LegBounds::solve(const Row& row, const PoseBox& box, const Turn
                 : row.leg.kind == Kind::strut   ? drive_of_strut(row, v)
                                                 : drive_of_crank(row, v);
   drive.arm = arm;
-  if (bounds == nullptr) return drive;
+  if (bounds != nullptr) bound_limits(row, v, drive, turn, wanted, *bounds);
+  return drive;
+}
+
+void LegBounds::bound_limits(const Row& row, const IntervalVector& v, const Drive& drive,
+                             const Turned& turn, const Mask& wanted,
+                             std::vector<LimitBound>& bounds) const {
+  using Kind = Leg::Kind;
   std::array<IntervalVector, 3> swing;
   for (int k = 0; k < 3; ++k)
-    if (turn.varies[k]) swing[k] = cross(turn.axes[k], arm);
+    if (turn.varies[k]) swing[k] = cross(turn.axes[k], drive.arm);
   /// Fills a limit from its value and its derivative by v.
   const auto set = [&](std::size_t limit, const Interval& value, const IntervalVector& by_v) {
     if (limit >= kMost || !wanted[limit]) return;
-    LimitBound& bound = (*bounds)[limit];
+    LimitBound& bound = bounds[limit];
     bound.value = value;
     for (int i = 0; i < 3; ++i) bound.gradient[i] = by_v[i];
     for (int k = 0; k < 3; ++k)
@@ -209,9 +216,8 @@ LegBounds::Drive LegBounds::solve(const Row& row, const PoseBox& box, const Turn
     if (!cone.on_platform) continue;
     for (int k = 0; k < 3; ++k)
       if (turn.varies[k])
-        (*bounds)[cone.limit].gradient[3 + k] -= dot(cross(turn.axes[k], axis), drive.rod);
+        bounds[cone.limit].gradient[3 + k] -= dot(cross(turn.axes[k], axis), drive.rod);
   }
-  return drive;
 }
 
 }  // namespace polyglide
