@@ -15,6 +15,9 @@ POLYGLIDE_INSTANCE SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<Matr
     const EigenBase<MatrixXd>&, int);
 POLYGLIDE_INSTANCE void PartialPivLU<MatrixXd>::compute();
 POLYGLIDE_INSTANCE LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);
+POLYGLIDE_INSTANCE void HouseholderQR<MatrixXd>::computeInPlace();
+POLYGLIDE_INSTANCE void ColPivHouseholderQR<MatrixXd>::computeInPlace();
+POLYGLIDE_INSTANCE void CompleteOrthogonalDecomposition<MatrixXd>::computeInPlace();
 
 // Products of matrices, by any orders of storage: as version 3.4 makes them.
 #if !EIGEN_VERSION_AT_LEAST(3, 4, 90)

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "kinematics/manifold.hpp"
+#include "kinematics/rank.hpp"
 #include "kinematics/screw_words.hpp"
 
 namespace polyglide {
@@ -128,12 +129,11 @@ void add_platform_motions(const Findings& findings, MobilityReport& report) {
   const Freedoms& free = findings.home_free;
   const Vector3& tool = model.mechanism.tool;
   if (free.platform.cols() == 0) return;  // rigid at home
-  const auto solver = free.platform.completeOrthogonalDecomposition();
   for (const Screw& twist : plain_basis(free.platform, tool, model.size)) {
     const Vector3 w = twist.head<3>();
     Screw at_tool;  // as the columns of free.platform
     at_tool << w, (twist.tail<3>() + w.cross(tool)) / model.size;
-    const Eigen::VectorXd rates = free.kernel * solver.solve(at_tool);
+    const Eigen::VectorXd rates = free.kernel * least_squares(free.platform, at_tool);
     report.platform_motions.push_back(
         {describe_twist(twist), twist, body_motions(model, findings.home, rates)});
   }

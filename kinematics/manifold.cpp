@@ -5,6 +5,8 @@
 #include <numeric>
 #include <optional>
 
+#include "kinematics/rank.hpp"
+
 namespace polyglide {
 namespace {
 
@@ -163,10 +165,8 @@ namespace {
 /// directions included, which the damped normal equations leave out.
 Eigen::VectorXd undamped_step(const Model& model, const Posture& posture,
                               const std::vector<int>& active) {
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
-  factors.setThreshold(kWeakest);
-  factors.compute(columns(closure_jacobian(model, posture), active));
-  return -factors.solve(closure_residual(model, posture));
+  return -least_squares(columns(closure_jacobian(model, posture), active),
+                        closure_residual(model, posture), kWeakest);
 }
 
 }  // namespace

@@ -91,6 +91,14 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& basis) {
          Eigen::MatrixXd::Identity(basis.rows(), basis.cols());
 }
 
+Eigen::MatrixXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right,
+                              double weakest) {
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
+  if (weakest > 0) factors.setThreshold(weakest);
+  factors.compute(matrix);
+  return factors.solve(right);
+}
+
 std::vector<int> independent_rows(const Eigen::MatrixXd& matrix, Eigen::Index count) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix.transpose());
   const auto& order = qr.colsPermutation().indices();

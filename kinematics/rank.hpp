@@ -64,6 +64,11 @@ struct Kernel {
   Eigen::MatrixXd basis;  ///< columns: orthonormal basis of the kernel, cols × (cols - rank)
 };
 
+/// Of the X that bring matrix·X nearest to `right`, column by column, the one of least norm.
+/// @param weakest pivots below this part of the largest count as zero; 0: those of rounding only
+[[nodiscard]] Eigen::MatrixXd least_squares(const Eigen::MatrixXd& matrix,
+                                            const Eigen::MatrixXd& right, double weakest = 0);
+
 /// Kernel, its rank decided by LAPACK's singular values. The basis comes from a pivoted QR
 /// decomposition where that sees the same rank beyond doubt, else from the singular vectors.
 /// A matrix without rows has the identity as kernel and the largest gap, 1e16.

@@ -52,7 +52,7 @@ std::optional<StiffnessRange> yielding_range(const Eigen::MatrixXd& stiffness, E
   if (rest > 0) {
     const Eigen::MatrixXd mixed = stiffness.bottomLeftCorner(rest, count);
     const Eigen::MatrixXd own = stiffness.bottomRightCorner(rest, rest);
-    yielding -= mixed.transpose() * own.completeOrthogonalDecomposition().solve(mixed);
+    yielding -= mixed.transpose() * least_squares(own, mixed);
   }
   const Eigen::VectorXd values =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(yielding, Eigen::EigenvaluesOnly)

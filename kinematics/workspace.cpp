@@ -144,10 +144,11 @@ void certify(Workspace& result, const Machine& machine, const WorkspaceOptions& 
   result.certified = true;
   (flat ? result.area_lower : result.volume_lower) = proved->lower;
   (flat ? result.area_upper : result.volume_upper) = proved->upper;
-  if (size >= proved->lower && size <= proved->upper) return;
-  // Samples that are proved wrong: faces along the grid of a machine of which few are taken.
-  size = (proved->lower + proved->upper) / 2;
-  result.error = (proved->upper - proved->lower) / 2;
+  // Of a machine of which few poses are asked the proof may know the size better than they do.
+  const double half = (proved->upper - proved->lower) / 2;
+  if (size >= proved->lower && size <= proved->upper && result.error <= half) return;
+  size = proved->lower + half;
+  result.error = half;
 }
 
 /// Poses that a workspace takes, about: to say how much of the work is done.

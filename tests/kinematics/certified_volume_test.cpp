@@ -152,6 +152,24 @@ TEST(CertifiedVolume, HoldsWhatSamplingFindsOfRandomMachines) {
   for (const int count : compared) EXPECT_GT(count, 4);
 }
 
+// A Tripteron's drives are x, y and z, and its limbs 2R arms across them, R long in all: with
+// A(a, b) = [hypot(0.44 - a, b) <= R] the volume is the integral of A(y, z) A(z, x) A(x, y).
+TEST(CertifiedVolume, EnclosesTheClosedFormOfATripteron) {
+  const double reach = std::hypot(0.2, 0.25) + std::hypot(0.24, 0.25);
+  constexpr int kSteps = 300;
+  const auto at = [](int i) { return 0.4 * (i + 0.5) / kSteps - 0.2; };
+  Eigen::MatrixXd within(kSteps, kSteps);
+  for (int i = 0; i < kSteps; ++i)
+    for (int k = 0; k < kSteps; ++k)
+      within(i, k) = std::hypot(0.44 - at(i), at(k)) <= reach ? 1 : 0;
+  const double expected = (within * within * within).trace() * std::pow(0.4 / kSteps, 3);
+  const Workspace dut = compute_workspace(catalog_machine("tripteron"));
+  EXPECT_TRUE(dut.certified);
+  EXPECT_LE(dut.volume_lower, expected);
+  EXPECT_GE(dut.volume_upper, expected);
+  EXPECT_NEAR(dut.volume, expected, 3 * dut.error);
+}
+
 // Both platforms are singular wherever they are: what is left is where the struts reach.
 TEST(CertifiedVolume, CountsSingularPlacesWhereAsked) {
   for (const char* name : {"wren-platform", "griffis-duffy", "table1-2"}) {
