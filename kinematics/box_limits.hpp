@@ -100,6 +100,9 @@ class BoxLimits {
   }
 
  protected:
+  /// [m, rad] A pose on its limit is allowed.
+  static constexpr double kSlack = 1e-9;
+
   std::size_t add(const std::string& name) {
     names_.push_back(name);
     return names_.size() - 1;

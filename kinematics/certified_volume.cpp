@@ -127,10 +127,7 @@ class Octree {
 
   bool touches_box(const OctreeCell& cell) const {
     for (int k = 0; k < 3; ++k)
-      if (box_.is_flat(k))
-        continue;
-      else if (cell.at[k] == 0 || cell.at[k] == (1 << cell.level) - 1)
-        return true;
+      if (!box_.is_flat(k) && (cell.at[k] == 0 || cell.at[k] == (1 << cell.level) - 1)) return true;
     return false;
   }
 

@@ -11,14 +11,6 @@ bool same(const PoseBox& a, const PoseBox& b) {
   return true;
 }
 
-/// About which the angles a, b, c turn.
-std::array<IntervalVector, 3> turning_axes(const Interval& b, const Interval& c) {
-  const IntervalVector x = vector_of(Vector3::UnitX()), y = vector_of(Vector3::UnitY()),
-                       z = vector_of(Vector3::UnitZ());
-  const IntervalRotation rz = rotation_about(z, c);
-  return {turned(product(rz, rotation_about(y, b)), x), turned(rz, y), z};
-}
-
 /// J with J T = D for every T and D inside; unbounded where T may be singular. J = D C - J (T C -
 /// I) with C about the inverse of T.
 IntervalMatrix divided(const IntervalMatrix& d, const IntervalMatrix& t) {
@@ -134,12 +126,9 @@ ClosureBounds::Known ClosureBounds::pose_of_box(const PoseBox& box) const {
 }
 
 ClosureBounds::Known ClosureBounds::known(const PoseBox& box, const BranchPointer& branch) const {
-  Known result{std::vector<Interval>(system_.variables(), Interval(0.0)),
-               {},
-               std::static_pointer_cast<const Followed>(branch)};
+  Known result = pose_of_box(box);
+  result.followed = std::static_pointer_cast<const Followed>(branch);
   const std::vector<Interval> parameters = parameters_of(box);
-  for (std::size_t k = 0; k < parameters.size(); ++k)
-    result.variables[system_.pose_variable(system_.commanded()[k])] = parameters[k];
   const bool in_middle = same(box, middle_of(result.followed->box));
   for (std::size_t p = 0; p < system_.parts().size(); ++p) {
     const FollowedRoot& root = result.followed->roots[p];
@@ -176,7 +165,7 @@ Interval ClosureBounds::rate(const Known& known, int variable, int parameter) co
 IntervalMatrix ClosureBounds::task_rates(const Known& known) const {
   const std::vector<int>& axes = machine_->task.axes;
   const auto pose = [&](int k) { return known.variables[system_.pose_variable(k)]; };
-  const auto turning = turning_axes(pose(4), pose(5));
+  const std::array<IntervalVector, 3> turning = turn_by({pose(3), pose(4), pose(5)}).axes;
   const int n = static_cast<int>(axes.size());
   IntervalMatrix by_task(n, n);
   for (int i = 0; i < static_cast<int>(axes.size()); ++i)

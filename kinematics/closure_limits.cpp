@@ -5,8 +5,7 @@
 namespace polyglide {
 namespace {
 
-constexpr double kFar = 1e6;     // [m] farther than anything
-constexpr double kSlack = 1e-9;  // [m, rad] a pose on its limit is allowed
+constexpr double kFar = 1e6;  // [m] farther than anything
 
 }  // namespace
 

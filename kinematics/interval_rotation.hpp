@@ -69,4 +69,20 @@ using IntervalRotation = std::array<IntervalVector, 3>;  ///< rows
   return rotation_about(axis, cosine(angle), sine(angle));
 }
 
+/// A rotation by three angles, and the axes about which each of them turns it.
+struct TurnByAngles {
+  IntervalRotation rotation;
+  std::array<IntervalVector, 3> axes;
+};
+
+/// Rz(c)·Ry(b)·Rx(a) of the angles {a, b, c}.
+[[nodiscard]] inline TurnByAngles turn_by(const IntervalVector& angles) {
+  const IntervalVector x = vector_of(Eigen::Vector3d::UnitX()),
+                       y = vector_of(Eigen::Vector3d::UnitY()),
+                       z = vector_of(Eigen::Vector3d::UnitZ());
+  const IntervalRotation rz = rotation_about(z, angles[2]);
+  const IntervalRotation zy = product(rz, rotation_about(y, angles[1]));
+  return {product(zy, rotation_about(x, angles[0])), {turned(zy, x), turned(rz, y), z}};
+}
+
 }  // namespace polyglide

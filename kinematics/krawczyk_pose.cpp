@@ -59,11 +59,9 @@ ModeCertificate certify_pose(const Machine& machine, const std::vector<int>& leg
     std::array<IntervalVector, 3> axes;
     IntervalRotation turn = at;
     if (n == 6) {
-      const IntervalRotation z = rotation_about(vector_of(Vector3::UnitZ()), box[5]);
-      const IntervalRotation zy = product(z, rotation_about(vector_of(Vector3::UnitY()), box[4]));
-      turn = product(product(zy, rotation_about(vector_of(Vector3::UnitX()), box[3])), at);
-      axes = {turned(zy, vector_of(Vector3::UnitX())), turned(z, vector_of(Vector3::UnitY())),
-              vector_of(Vector3::UnitZ())};
+      const TurnByAngles by = turn_by({box[3], box[4], box[5]});
+      turn = product(by.rotation, at);
+      axes = by.axes;
     }
     for (int i = 0; i < n; ++i) {
       const IntervalVector arm = turned(turn, distances[i].arm);

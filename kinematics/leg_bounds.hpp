@@ -89,9 +89,6 @@ class LegBounds final : public BoxLimits {
     IntervalVector arm;  // from the tool to the platform joint
   };
 
-  /// [m, rad] as in LegKernel: a pose on its limit is allowed.
-  static constexpr double kSlack = 1e-9;
-
   LegBounds() = default;
   void add_row(const Machine& machine, int index, const std::vector<std::string>& ignored);
   void add_planes(const Machine& machine, const std::vector<std::string>& ignored);

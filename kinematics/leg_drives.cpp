@@ -10,25 +10,21 @@ constexpr double kBelowHalfTurn = 3.14;  // angles nearer to it may be on either
 }  // namespace
 
 LegBounds::Turned LegBounds::turn(const PoseBox& box) const {
-  const IntervalVector x = vector_of(Vector3::UnitX()), y = vector_of(Vector3::UnitY()),
-                       z = vector_of(Vector3::UnitZ());
+  const bool as_at_home = fixed_.vec().isZero(0);
+  const IntervalRotation fixed = as_at_home ? no_rotation() : rotation_of(fixed_);
   Turned result;
   bool turns = false;
   for (int i = 0; i < 3; ++i) {
     result.varies[i] = magnitude(box[3 + i]) > 0;
     turns = turns || result.varies[i];
   }
-  const bool as_at_home = fixed_.vec().isZero(0);
-  const IntervalRotation fixed = as_at_home ? no_rotation() : rotation_of(fixed_);
   if (!turns) {
-    result.rotation = fixed;
-    result.axes = {x, y, z};
+    result.rotation = fixed;  // and the axes, about which nothing turns, are not asked
     return result;
   }
-  const IntervalRotation rz = rotation_about(z, box[5]);
-  const IntervalRotation zy = product(rz, rotation_about(y, box[4]));
-  result.axes = {turned(zy, x), turned(rz, y), z};
-  result.rotation = product(product(zy, rotation_about(x, box[3])), fixed);
+  const TurnByAngles turn = turn_by({box[3], box[4], box[5]});
+  result.axes = turn.axes;
+  result.rotation = product(turn.rotation, fixed);
   return result;
 }
 

@@ -74,11 +74,9 @@ bool all_finite(const IntervalMatrix& a) {
 
 std::optional<PlaneBound> singular_face(const BoxLimits& limits, const PoseBox& box,
                                         const Cuboid& cuboid, int side) {
-  PoseBox centre = box;
-  for (int k = 0; k < 3; ++k) centre[k] = Interval(cuboid.middle[k]);
   const std::optional<BoxLimits::MovingRows> whole = limits.moving_rows(box);
   if (!whole || !std::ranges::all_of(whole->rates, all_finite)) return std::nullopt;
-  const IntervalMatrix at = limits.rod_rows(centre, nullptr);
+  const IntervalMatrix at = limits.rod_rows(middle_of(box), nullptr);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(middle(at),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::MatrixXd u = svd.matrixU().transpose(), v = svd.matrixV();
